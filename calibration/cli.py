@@ -1,0 +1,197 @@
+"""The command line: ``ductile``.
+
+Only what every command needs is imported here; each command imports the rest when it runs.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, CycloptsError, Parameter
+from rich.console import Console
+
+from capacity.errors import InputError
+
+app = App(
+    name="ductile",
+    help="Joints for rigid-body simulations that yield and tear as steel does, held against an elastic–plastic FEM.",
+    version_flags=["--version"],
+    result_action="return_value",
+)
+
+Json = Annotated[bool, Parameter(name="--json", negative=())]
+Folder = Annotated[Path | None, Parameter(name=["-o", "--output"])]
+
+
+@app.command
+def capacity(
+    section: str,
+    /,
+    *,
+    material: str = "S235",
+    criterion: str = "von-mises",
+    as_json: Json = False,
+) -> int:
+    """What a section carries: N_max, Q_max, M_max, and how stiff it is.
+
+    Parameters
+    ----------
+    section
+        A shape with dimensions ("rectangle 50x100 mm" is width x height, "circle 80 mm", "CHS 168.3x8 mm",
+        "RHS 200x100x8 mm", "I 300x150x7.1x10.7 mm") or a catalogue name ("IPE 300").
+    material
+        A grade (S235, S355 …) or values ("fy=235 MPa, E=210 GPa, rho=7850 kg/m^3").
+    criterion
+        What yields in shear: tresca or von-mises.
+    as_json
+        Print one JSON object, in SI units.
+    """
+    import capacity as package
+
+    shape = package.parse_section(section, "section")
+    metal = package.parse_material(material, "--material")
+    criterion = package.criterion_name(criterion, "--criterion")
+    result = package.capacity(shape, metal, criterion)
+    values = {
+        **asdict(result),
+        "section": shape.name,
+        "material": metal.name,
+        "criterion": criterion,
+        "youngs_modulus": metal.youngs_modulus,
+        "yield_stress": metal.yield_stress,
+        "density": metal.density,
+        "area": shape.area,
+        "second_moment_of_area": shape.second_moment_of_area,
+        "elastic_modulus": shape.elastic_modulus,
+        "plastic_modulus": shape.plastic_modulus,
+        "shear_area": shape.shear_area,
+        "wall_area": shape.wall_area,
+        "mass_per_length": metal.density * shape.area,
+    }
+    if as_json:
+        print(json.dumps(values))
+    else:
+        from calibration.capacity_table import print_capacity
+
+        print_capacity(values, Console())
+    return 0
+
+
+@app.command
+def scenes(name: str | None = None, /) -> int:
+    """List the scenes that come with it, or write one out to edit: ductile scenes cantilever > my.toml
+
+    Parameters
+    ----------
+    name
+        A built-in scene.
+    """
+    import scene as package
+
+    if name is not None:
+        sys.stdout.write(package.builtin_text(name))
+        return 0
+    for builtin in package.builtin_names():
+        print(f"{builtin:20} {package.load_scene(builtin).title}")
+    return 0
+
+
+@app.command
+def calibrate(
+    scene: str,
+    /,
+    *,
+    target_error: str = "1 %",
+    output: Folder = None,
+    as_json: Json = False,
+) -> int:
+    """Find the cheapest rigid-body model that follows the elastic–plastic reference closely enough.
+
+    Parameters
+    ----------
+    scene
+        A TOML file, or the name of a built-in scene.
+    target_error
+        Largest difference of load allowed on the path, as a share of the largest load ("1 %", "0.003").
+    output
+        Folder for report.html, joints.json and the curves as CSV; out/SCENE by default.
+    as_json
+        Print one JSON object, in SI units, in place of the report.
+    """
+    import scene as scenes_package
+    from calibration.output import prepare_folder, write_files
+    from calibration.progress import explained_compilation, progress_bar
+    from capacity.units import positive
+
+    target = positive(target_error, "number", "--target-error")
+    if target >= 1.0:
+        raise InputError("--target-error", f'"{target_error}" is not below 100 %', 'write a share such as "1 %"')
+    loaded = scenes_package.load_scene(scene)
+    folder = output or Path("out") / Path(scene).stem
+    prepare_folder(folder)
+
+    messages = Console(stderr=True)
+    with explained_compilation(messages):
+        import sim  # noqa: F401
+    from calibration.export import calibration_object, curve_csv, joint_table
+    from calibration.page import report_page
+    from calibration.report import print_report
+    from calibration.tuning import calibrate as tune
+
+    with progress_bar(messages) as watch:
+        result = tune(loaded, target, scene, watch)
+        watch("writing the report", 1.0)
+        joints = joint_table(loaded, result.best.model, scene)
+        whole = calibration_object(result)
+        files = {
+            "report.html": report_page(result),
+            "calibration.json": json.dumps(whole, indent=1),
+            "joints.json": json.dumps(joints, indent=1),
+            "reference.csv": curve_csv(result.reference.displacement, result.reference.load),
+            "model.csv": curve_csv(result.best.push.displacement, result.best.push.load),
+        }
+        write_files(folder, files)
+    if as_json:
+        print(json.dumps(whole))
+    else:
+        print_report(result, Console())
+    messages.print(f"Written to {folder}: {', '.join(files)}", soft_wrap=True)
+    return 0 if result.target_met else 1
+
+
+def _run(tokens: Sequence[str] | None) -> int:
+    return int(app(tokens, exit_on_error=False, print_error=False) or 0)
+
+
+def main(tokens: Sequence[str] | None = None, run: Callable[[Sequence[str] | None], int] = _run) -> None:
+    """Entry point of the command; exits with 0 (done), 1 (done, but the target was missed) or 2 (bad input)."""
+    try:
+        status = run(tokens)
+    except InputError as error:
+        status = _refuse(str(error))
+    except CycloptsError as error:
+        status = _refuse(f"{error} (see `ductile --help`)")
+    except KeyboardInterrupt:
+        status = 130
+    except RuntimeError as error:
+        from fem_reference import NotConverged
+        from sim import SolverError
+
+        if not isinstance(error, (NotConverged, SolverError)):
+            raise
+        status = _refuse(str(error))
+    sys.exit(status)
+
+
+def _refuse(message: str) -> int:
+    Console(stderr=True, soft_wrap=True, highlight=False).print(f"ductile: {message}", markup=False)
+    return 2
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,164 @@
+"""A calibration as data: one JSON object, the joint table, and the raw curves."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+import pymunk
+
+from calibration.tuning import Calibration, Trial
+from scene import Scene
+from sim import Joint, Model, assemble
+
+_LIBRARIES = ("ductile-joints", "numpy", "scipy", "scikit-fem", "pymunk", "numba")
+
+
+def versions() -> dict[str, str]:
+    """Versions of everything that the numbers depend on."""
+    return {name: version(name) for name in _LIBRARIES}
+
+
+def settings(model: Model) -> dict[str, Any]:
+    """A model's settings; fibres only where the law has any."""
+    values = asdict(model)
+    values["points"] = values.pop("joints")
+    if model.law != "fibre":
+        del values["fibres"]
+    return values
+
+
+def calibration_object(result: Calibration) -> dict[str, Any]:
+    """The calibration as one object for JSON; SI units."""
+    best, reference = result.best, result.reference
+    return {
+        "scene": result.name,
+        "title": result.scene.title,
+        "capacity": {name: asdict(capacity) for name, capacity in result.capacity.items()},
+        "reference": {
+            "method": reference.method,
+            "displacement": reference.displacement.tolist(),
+            "load": reference.load.tolist(),
+            "error_estimate": reference.error_estimate,
+            "elements": reference.elements,
+            "fibres": reference.fibres,
+            "seconds": reference.seconds,
+        },
+        "model": {
+            **settings(best.model),
+            "bodies": best.push.bodies,
+            "joints": best.push.joints,
+            "displacement": best.push.displacement.tolist(),
+            "load": best.push.load.tolist(),
+            "newton_steps": best.push.newton_steps,
+            "unconverged": best.push.unconverged,
+            "dissipated": best.push.dissipated,
+            "seconds": best.push.seconds,
+        },
+        "errors": asdict(best.errors),
+        "speed": {
+            "seconds_per_simulated_second": best.push.seconds_per_simulated_second,
+            "microseconds_per_joint_step": best.push.microseconds_per_joint_step,
+        },
+        "pareto": [_tried(trial) for trial in result.trials],
+        "target_error": result.target_error,
+        "target_met": result.target_met,
+        "versions": versions(),
+    }
+
+
+def _tried(trial: Trial) -> dict[str, Any]:
+    return {
+        **settings(trial.model),
+        "bodies": trial.push.bodies,
+        "joints": trial.push.joints,
+        **asdict(trial.errors),
+        "seconds": trial.push.seconds,
+        "seconds_per_simulated_second": trial.push.seconds_per_simulated_second,
+        "microseconds_per_joint_step": trial.push.microseconds_per_joint_step,
+    }
+
+
+def joint_table(scene: Scene, model: Model, name: str = "") -> dict[str, Any]:
+    """Everything needed to build the bodies and joints of ``scene`` elsewhere; SI units.
+
+    Bodies have mass, moment of inertia, position, and angle; joints say which bodies they hold (``"ground"`` for the
+    world), where, in which direction, and by what law. An unlimited capacity is null.
+    """
+    assembly = assemble(scene, model)
+    names = {assembly.space.static_body: "ground"}
+    counts: dict[str, int] = {}
+    for piece in assembly.pieces:
+        counts[piece.member] = counts.get(piece.member, 0) + 1
+        names[piece.body] = f"{piece.member}.{counts[piece.member]}"
+    for body in assembly.space.bodies:
+        names.setdefault(body, f"node.{len(names)}")
+    del names[assembly.pusher]
+    joints = assembly.structure.joints[:-1]  # the last one is the pusher's
+    spans = {piece.body: (piece.start, piece.end) for piece in assembly.pieces}
+    return {
+        "format": "ductile-joints/1",
+        "units": "SI: m, kg, s, N, rad",
+        "scene": name or scene.title,
+        "gravity": float(scene.gravity),
+        "model": settings(model),
+        "bodies": [_body(body, label, spans.get(body)) for body, label in names.items() if label != "ground"],
+        "joints": [
+            {**_joint(joint, names), **_place(assembly.places[i] if i < len(assembly.places) else None)}
+            for i, joint in enumerate(joints)
+        ],
+        "versions": versions(),
+    }
+
+
+def _body(body: pymunk.Body, label: str, span: tuple[float, float] | None) -> dict[str, Any]:
+    return {
+        "name": label,
+        "mass": body.mass,
+        "moment": body.moment,
+        "position": list(body.position),
+        "angle": body.angle,
+        "along_member": None if span is None else list(span),
+    }
+
+
+def _joint(joint: Joint, names: dict[pymunk.Body, str]) -> dict[str, Any]:
+    tangent = joint.law.elastic_tangent()
+    law = {key: _plain(value) for key, value in asdict(joint.law).items()}  # type: ignore[call-overload]
+    return {
+        "a": names[joint.a],
+        "b": names[joint.b],
+        "at": list(joint.at),
+        "anchor_a": list(joint.a.world_to_local(joint.at)),
+        "anchor_b": list(joint.b.world_to_local(joint.at)),
+        "direction": joint.direction,
+        "turn": joint.turn,
+        "elastic_stiffness": {"axial": tangent[0], "shear": tangent[3], "rotation": tangent[5]},
+        "law": {"name": joint.law.name, **law},
+    }
+
+
+def _place(place: Any) -> dict[str, Any]:
+    return {} if place is None else asdict(place)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and math.isinf(value) else value
+
+
+def curve_csv(displacement: np.ndarray, load: np.ndarray) -> str:
+    """A load–displacement curve as CSV text."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["displacement_m", "load_N"])
+    writer.writerows(zip(displacement.tolist(), load.tolist(), strict=True))
+    return text.getvalue()

@@ -1,0 +1,92 @@
+"""Figures of a calibration, as SVG text for a page or as files."""
+
+from __future__ import annotations
+
+import io
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from calibration.tuning import Calibration
+
+_INK, _REFERENCE, _MODEL, _FAINT = "#22303c", "#1f6fb2", "#d1495b", "#9aa5b1"
+_STYLE = {
+    "svg.hashsalt": "ductile-joints",
+    "svg.fonttype": "none",
+    "font.family": "sans-serif",
+    "font.size": 10,
+    "axes.edgecolor": _INK,
+    "axes.labelcolor": _INK,
+    "xtick.color": _INK,
+    "ytick.color": _INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e4e8ec",
+    "legend.frameon": False,
+}
+
+
+def curves(result: Calibration) -> Figure:
+    """Both load–deflection curves, and below them by how much they differ."""
+    reference, push = result.reference, result.best.push
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure(figsize=(7.2, 4.6), layout="constrained")
+        top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+        top.plot(
+            1e3 * reference.displacement, 1e-3 * reference.load, color=_REFERENCE, lw=2.5, label="reference (fibre FEM)"
+        )
+        label = f"{push.bodies} rigid bodies, {push.joints} joints"
+        top.plot(1e3 * push.displacement, 1e-3 * push.load, color=_MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
+        top.set_ylabel("load [kN]")
+        top.legend(loc="lower right")
+        difference = np.interp(reference.displacement, push.displacement, push.load) - reference.load
+        share = 100.0 * difference / np.abs(reference.load).max()
+        bottom.axhspan(-100.0 * result.target_error, 100.0 * result.target_error, color="#e9f3ec", lw=0)
+        bottom.plot(1e3 * reference.displacement, share, color=_MODEL, lw=1.4)
+        bottom.set_ylim(-150.0 * result.target_error, 150.0 * result.target_error)
+        if np.abs(share).max() > 150.0 * result.target_error:
+            bottom.set_ylim(auto=True)
+        bottom.set_ylabel("difference\n[% of peak]")
+        bottom.set_xlabel("displacement of the pushed node [mm]")
+    return figure
+
+
+def frontier(result: Calibration) -> Figure:
+    """Path error of every model tried against what a simulated second of it costs."""
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure(figsize=(7.2, 4.2), layout="constrained")
+        axes = figure.subplots()
+        groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
+        for trial in result.trials:
+            point = (1e3 * trial.push.seconds_per_simulated_second, 100.0 * trial.errors.path_max)
+            groups.setdefault((trial.model.rule, trial.model.law), []).append(point)
+        markers = {"lobatto": "o", "equal": "s"}
+        colours = {"elastic-plastic": _FAINT, "fibre": _MODEL}
+        for (rule, law), points in sorted(groups.items()):
+            axes.scatter(
+                *zip(*points, strict=True), s=26, marker=markers[rule], color=colours[law], label=f"{rule}, {law}"
+            )
+        best = result.best
+        x, y = 1e3 * best.push.seconds_per_simulated_second, 100.0 * best.errors.path_max
+        axes.scatter([x], [y], s=120, facecolors="none", edgecolors=_INK, linewidths=1.4, label="chosen")
+        axes.axhline(100.0 * result.target_error, color=_INK, lw=1.0, ls=(0, (4, 2)))
+        axes.annotate(
+            "target", (1.0, 100.0 * result.target_error), xycoords=("axes fraction", "data"), ha="right", va="bottom"
+        )
+        axes.set_yscale("log")
+        axes.set_xscale("log")
+        axes.set_xlabel("computing time for a simulated second [ms]")
+        axes.set_ylabel("path error [% of peak load]")
+        axes.legend(loc="best", fontsize=9)
+    return figure
+
+
+def svg(figure: Figure) -> str:
+    """The figure as an ``<svg>`` element, the same text for the same numbers."""
+    text = io.StringIO()
+    with matplotlib.rc_context(_STYLE):
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    whole = text.getvalue()
+    return whole[whole.index("<svg") :]

@@ -1,0 +1,31 @@
+"""Which models to try, from cheap to dear."""
+
+from sim.members import Model
+
+# A hinge at each joint knows no gradual yielding, and more joints do not teach it.
+_HINGES = (3, 5, 8)
+_LOBATTO = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 17, 20)
+_EQUAL = (5, 9, 17, 33)
+_FIBRES = (8, 12, 16, 24)
+_STEPS = (1.0 / 60.0, 1.0 / 240.0)
+
+
+def relative_cost(model: Model) -> float:
+    """Cost of a second of simulation, in units of one elastic–plastic joint stepped once.
+
+    Measured on a chain: what Chipmunk and the solver do for a joint costs about as much as sixteen fibres.
+    """
+    fibres = model.fibres if model.law == "fibre" else 0
+    return (model.joints - 1) * (1.0 + fibres / 16.0) * (0.8 + 0.1 * model.iterations) / model.dt
+
+
+def candidates() -> list[Model]:
+    """Models in order of `relative_cost`: rules, numbers of joints, laws, fibres and steps that are worth trying."""
+    models = []
+    for dt in _STEPS:
+        models += [Model("lobatto", joints, "elastic-plastic", dt=dt) for joints in _HINGES]
+        for joints in _LOBATTO:
+            models += [Model("lobatto", joints, "fibre", fibres, dt) for fibres in _FIBRES]
+        for joints in _EQUAL:
+            models += [Model("equal", joints, "fibre", fibres, dt) for fibres in _FIBRES]
+    return sorted(models, key=relative_cost)

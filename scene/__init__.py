@@ -1,0 +1,31 @@
+"""What is there: nodes, members, supports and what happens to them; read from TOML.
+
+Signs, for the whole project
+----------------------------
+Global axes: x to the right, y up, angles and moments counter-clockwise.
+
+A member's local axes: x from its start to its end, y to the left of that. With a cut that leaves part *a* before it
+and part *b* behind it (seen along local x):
+
+    N > 0   tension: b pulls a along +x
+    Q > 0   b pulls a along +y, and is itself pulled along -y
+    M > 0   b turns a counter-clockwise: fibres at y < 0 are in tension ("sagging" for a member drawn left to right)
+
+so that a fibre's strain is ε = ε₀ - y κ with κ = dθ/dx, and N = ∫σ dA, M = -∫σ y dA. The matching deformations of a
+joint from a to b are u = extension along x, v = slip along y, θ = rotation of b less rotation of a.
+"""
+
+from scene.model import Member, Node, Push, Scene, check
+from scene.reading import builtin_names, builtin_text, load_scene, parse_scene
+
+__all__ = [
+    "Member",
+    "Node",
+    "Push",
+    "Scene",
+    "builtin_names",
+    "builtin_text",
+    "check",
+    "load_scene",
+    "parse_scene",
+]

@@ -1,0 +1,126 @@
+"""Scene files (TOML) to scenes, with faults named by their place."""
+
+import difflib
+import re
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from capacity import InputError, Material, Section, parse_material, parse_section
+from scene.model import Scene, check
+from scene.quantities import Quantity
+
+
+def builtin_names() -> list[str]:
+    """Names of the scenes that come with the package, sorted."""
+    folder = resources.files("scene").joinpath("builtin")
+    return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
+
+
+def builtin_text(name: str) -> str:
+    """The file of a built-in scene.
+
+    Raises
+    ------
+    InputError
+        When there is no such scene.
+    """
+    names = builtin_names()
+    if name not in names:
+        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+        hint = f"did you mean {near[0]}? " if near else ""
+        cure = f"{hint}The built-in scenes are {', '.join(names)}; a file of your own ends in .toml"
+        raise InputError("scene", f'there is no scene "{name}"', cure)
+    return resources.files("scene").joinpath(f"builtin/{name}.toml").read_text(encoding="utf-8")
+
+
+def load_scene(name: str) -> Scene:
+    """A scene by the path of its TOML file or by its built-in name.
+
+    Raises
+    ------
+    InputError
+        When the file is missing or anything in it cannot be used; the message names the place and the cure.
+    """
+    if not name.endswith(".toml"):
+        return parse_scene(builtin_text(name), name)
+    try:
+        text = Path(name).read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise InputError(name, "there is no such file", "`ductile scenes NAME > my.toml` writes one to edit") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(name, f"it cannot be read ({error})", "give a text file in UTF-8") from error
+    return parse_scene(text, name)
+
+
+def parse_scene(text: str, source: str) -> Scene:
+    """A scene from TOML text; ``source`` names it in messages."""
+    try:
+        raw = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(source, f"it is not valid TOML ({error})", "mend that line") from error
+    try:
+        return check(msgspec.convert(raw, Scene, dec_hook=_read))
+    except msgspec.ValidationError as error:
+        raise _explained(error, raw).at(source) from error
+    except InputError as error:
+        raise error.at(source) from error
+
+
+def _read(kind: type, value: Any) -> Any:
+    """msgspec's hook for the types it does not know."""
+    if issubclass(kind, Quantity):
+        return kind.read(value)
+    if not isinstance(value, str):
+        raise InputError("", f"{value!r} is not text", 'write text such as "IPE 300" or "S235"')
+    if kind is Section:
+        return parse_section(value, "")
+    if kind is Material:
+        return parse_material(value, "")
+    raise NotImplementedError(kind)
+
+
+def _explained(error: msgspec.ValidationError, raw: dict[str, Any]) -> InputError:
+    """The fault that msgspec found, with its place as a user would write it and a cure."""
+    message, _, path = str(error).partition(" - at ")
+    place = _named(path.strip("`"), str(error), raw)
+    cause = error.__cause__
+    if isinstance(cause, InputError):
+        inner = f"{place} > {cause.place.lstrip(' >')}" if cause.place else place
+        return InputError(inner, cause.fault, cause.cure)
+    unknown = re.search(r"unknown field `(.+)`", message)
+    if unknown:
+        known = _known_keys(place)
+        near = difflib.get_close_matches(unknown[1], known, n=1, cutoff=0.5)
+        hint = f'did you mean "{near[0]}"? ' if near else ""
+        return InputError(place or "top level", f'unknown key "{unknown[1]}"', f"{hint}The keys are {', '.join(known)}")
+    return InputError(place or "top level", message[0].lower() + message[1:], "see `ductile scenes cantilever`")
+
+
+def _named(path: str, message: str, raw: dict[str, Any]) -> str:
+    """msgspec's path without its ``$``, and with the key that its ``[...]`` leaves open."""
+    parts = path.removeprefix("$").lstrip(".")
+    head, open_key, tail = parts.partition("[...]")
+    if not open_key:
+        return parts
+    for key, value in raw[head].items():
+        try:
+            msgspec.convert({**raw, head: {key: value}}, Scene, dec_hook=_read)
+        except msgspec.ValidationError as error:
+            if str(error) == message:
+                return f"{head}.{key}{tail}"
+    return parts
+
+
+def _known_keys(place: str) -> list[str]:
+    """Keys that a table at ``place`` may have."""
+    struct: Any = Scene
+    fields = {f.encode_name: f.type for f in msgspec.structs.fields(Scene)}
+    head = place.split(".")[0].split("[")[0]
+    if head in fields:
+        inner = fields[head]
+        struct = getattr(inner, "__args__", (inner,))[-1]
+    return [f.encode_name for f in msgspec.structs.fields(struct)]

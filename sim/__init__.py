@@ -1,0 +1,29 @@
+"""What rigid bodies with ductile joints do: pymunk, and one implicit solve for a whole structure inside its step."""
+
+from sim import chipmunk
+
+chipmunk.verify()
+
+from sim.laws import ElasticPlastic, FibreSection, Law  # noqa: E402  (nothing may run on structs that do not fit)
+from sim.members import Assembly, Model, assemble  # noqa: E402
+from sim.pushover import Push, push_over  # noqa: E402
+from sim.rules import RULES, Rule, equal, lobatto  # noqa: E402
+from sim.structure import Joint, SolverError, Structure  # noqa: E402
+
+__all__ = [
+    "RULES",
+    "Assembly",
+    "ElasticPlastic",
+    "FibreSection",
+    "Joint",
+    "Law",
+    "Model",
+    "Push",
+    "Rule",
+    "SolverError",
+    "Structure",
+    "assemble",
+    "equal",
+    "lobatto",
+    "push_over",
+]

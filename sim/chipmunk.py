@@ -1,0 +1,104 @@
+"""Chipmunk's structs: the only file that knows where their fields lie.
+
+A Chipmunk constraint is a C struct whose first field points to a table of four functions. `adopt` takes an ordinary
+pymunk constraint and gives it a table of our own, so that Chipmunk's solver calls our functions in its place.
+
+Offsets are in 8-byte words, for 64-bit builds of pymunk 7. `verify` holds them against the installed pymunk through
+its own setters, once, when `sim` is imported.
+"""
+
+import numpy as np
+import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
+
+#: pymunk versions that the offsets were taken from.
+KNOWN_VERSIONS = "7.3"
+
+BODY_WORDS = 17
+MASS = 2
+MOMENT = 4
+X, Y = 8, 9
+VX, VY = 10, 11
+ANGLE = 14
+SPIN = 15
+
+# In cpConstraint: the function table first; the first words past its end belong to the kind of joint, here a pivot
+# joint's anchors, which nobody reads once its functions are replaced.
+_CLASS = 0
+_BODY_A, _BODY_B = 2, 3
+CONTROL = 13
+
+
+class IncompatiblePymunk(ImportError):
+    """The installed pymunk lays its structs out in another way."""
+
+
+def address(pointer: object) -> int:
+    """A cffi pointer as an integer."""
+    return int(ffi.cast("intptr_t", pointer))
+
+
+def body_address(body: pymunk.Body) -> int:
+    """Where a body's struct lies."""
+    return address(body._body)
+
+
+def words(location: int, count: int, kind: type = np.float64) -> np.ndarray:
+    """``count`` 8-byte words at ``location`` as an array that shares the memory."""
+    return np.frombuffer(ffi.buffer(ffi.cast("char *", location), 8 * count), dtype=kind)
+
+
+def pivot(a: pymunk.Body, b: pymunk.Body) -> object:
+    """A new cpConstraint of Chipmunk's own between two bodies, for `adopt`."""
+    return lib.cpPivotJointNew2(a._body, b._body, (0.0, 0.0), (0.0, 0.0))
+
+
+def adopt(constraint: object, functions: np.ndarray, control: np.ndarray, after_step: int) -> None:
+    """Make Chipmunk call ``functions`` for ``constraint``.
+
+    Parameters
+    ----------
+    constraint : cffi pointer
+        From `pivot`.
+    functions : (4,) int64
+        Addresses of preStep, applyCachedImpulse, applyImpulse and getImpulse; must outlive the constraint.
+    control : int64 array
+        What the functions work on; they find its address at word `CONTROL`. Must outlive the constraint.
+    after_step : int
+        Address of a function (constraint, space) called when a step's impulses are final.
+    """
+    struct = words(address(constraint), CONTROL + 1, np.int64)
+    struct[_CLASS] = functions.ctypes.data
+    struct[CONTROL] = control.ctypes.data
+    lib.cpConstraintSetPostSolveFunc(constraint, ffi.cast("cpConstraintPostSolveFunc", after_step))
+
+
+def verify() -> None:
+    """Check every offset against the installed pymunk.
+
+    Raises
+    ------
+    IncompatiblePymunk
+        When a field is not where it is expected; the message names the versions that work.
+    """
+    body = pymunk.Body(3.0, 5.0)
+    body.position = (7.0, 11.0)
+    body.velocity = (13.0, 17.0)
+    body.angle = 19.0
+    body.angular_velocity = 23.0
+    field = words(body_address(body), BODY_WORDS)
+    expected = {MASS: 3.0, MOMENT: 5.0, X: 7.0, Y: 11.0, VX: 13.0, VY: 17.0, ANGLE: 19.0, SPIN: 23.0}
+    fits = all(field[word] == value for word, value in expected.items())
+
+    other = pymunk.Body(1.0, 1.0)
+    joint = pymunk.PivotJoint(body, other, (29.0, 31.0), (37.0, 41.0))
+    location = address(joint._constraint)
+    anchors = words(location + 8 * CONTROL, 4)
+    bodies = words(location, CONTROL, np.int64)
+    fits &= bool(np.array_equal(anchors, [29.0, 31.0, 37.0, 41.0]))
+    fits &= bodies[_BODY_A] == body_address(body) and bodies[_BODY_B] == body_address(other)
+    if not fits:
+        raise IncompatiblePymunk(
+            f"pymunk {pymunk.version} lays out its bodies or constraints in a way that sim does not know; "
+            f"install version {KNOWN_VERSIONS}: pip install 'pymunk>=7.3,<7.4'"
+        )

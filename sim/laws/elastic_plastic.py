@@ -1,0 +1,76 @@
+"""Elastic–perfectly plastic joint with N, Q and M capped one by one: the joint of the original paper.
+
+    s_i = k_i (q_i - p_i),  |s_i| ≤ cap_i,  ṗ_i only at the cap.
+
+Parameters in memory: k (3), cap (3). State: p (3), plastic deformation summed without sign (3).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import cfunc
+
+from sim.memory import LAW_SIGNATURE, floats
+
+
+@cfunc(LAW_SIGNATURE, cache=True)
+def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
+    k, p, q, r = floats(parameters, 6), floats(state, 6), floats(deformation, 3), floats(out, 9)
+    for i in range(3):
+        force, cap = k[i] * (q[i] - p[i]), k[3 + i]
+        r[i] = min(max(force, -cap), cap)
+    r[3] = k[0] if abs(r[0]) < k[3] else 0.0
+    r[4], r[5] = 0.0, 0.0
+    r[6] = k[1] if abs(r[1]) < k[4] else 0.0
+    r[7] = 0.0
+    r[8] = k[2] if abs(r[2]) < k[5] else 0.0
+
+
+@cfunc(LAW_SIGNATURE, cache=True)
+def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
+    k, p, q, r = floats(parameters, 6), floats(state, 6), floats(deformation, 3), floats(out, 2)
+    energy, work = 0.0, 0.0
+    for i in range(3):
+        force = k[i] * (q[i] - p[i])
+        held = min(max(force, -k[3 + i]), k[3 + i])
+        if held != force:
+            slip = (force - held) / k[i]
+            p[i] += slip
+            p[3 + i] += abs(slip)
+            work += held * slip
+        if k[i] > 0.0:
+            energy += 0.5 * held * held / k[i]
+    r[0], r[1] = energy, work
+
+
+@dataclass(frozen=True)
+class ElasticPlastic:
+    """The law above.
+
+    Parameters
+    ----------
+    stiffness : (float, float, float)
+        Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness.
+    capacity : (float, float, float)
+        N_max [N], Q_max [N], M_max [N m].
+    """
+
+    stiffness: tuple[float, float, float]
+    capacity: tuple[float, float, float]
+
+    name = "elastic-plastic"
+    respond_address = respond.address
+    commit_address = commit.address
+
+    def parameters(self) -> np.ndarray:
+        """Parameters as they lie in memory."""
+        return np.array([*self.stiffness, *self.capacity])
+
+    def state(self) -> np.ndarray:
+        """State of a new joint as it lies in memory."""
+        return np.zeros(6)
+
+    def elastic_tangent(self) -> tuple[float, float, float, float, float, float]:
+        """Upper triangle of ∂s/∂q while elastic, row by row."""
+        k = self.stiffness
+        return k[0], 0.0, 0.0, k[1], 0.0, k[2]

@@ -1,0 +1,156 @@
+"""Pushing a scene over with rigid bodies: the load at each distance, and what it cost."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pymunk
+
+from scene import Scene
+from sim.laws import ElasticPlastic
+from sim.members import Assembly, Model, assemble
+from sim.structure import SolverError
+
+#: How long a push takes in the simulation [s]: slow against the vibrations of ordinary members, which the implicit
+#: Euler scheme damps.
+DURATION = 4.0
+#: Step while a scene settles under its own weight [s]; long, for the longer it is the more it damps.
+SETTLING_STEP = 1.0 / 60.0
+_MOST_SETTLING_STEPS = 10_000
+
+
+@dataclass(frozen=True)
+class Push:
+    """A load–displacement curve from rigid bodies, and what it cost.
+
+    Attributes
+    ----------
+    displacement : (k,) float
+        Displacement of the pushed node along the push after each step [m], from 0.
+    load : (k,) float
+        Force on it along the push [N].
+    bodies, joints : int
+        Dynamic bodies, and joints of the members.
+    steps : int
+        Steps taken.
+    seconds : float
+        Time that the steps took.
+    simulated_seconds : float
+        Time that passed in the simulation.
+    newton_steps : float
+        Newton steps a step, on average.
+    unconverged : int
+        Solves that ended above the solver's tolerance.
+    dissipated : float
+        Plastic work in the joints [J].
+    """
+
+    displacement: np.ndarray
+    load: np.ndarray
+    bodies: int
+    joints: int
+    steps: int
+    seconds: float
+    simulated_seconds: float
+    newton_steps: float
+    unconverged: int
+    dissipated: float
+
+    @property
+    def seconds_per_simulated_second(self) -> float:
+        """Time that a second of simulation takes; its inverse is the real-time factor."""
+        return self.seconds / self.simulated_seconds
+
+    @property
+    def microseconds_per_joint_step(self) -> float:
+        """Time that a joint takes in a step [µs], the whole step's time shared out."""
+        return 1e6 * self.seconds / (self.steps * self.joints)
+
+
+def push_over(
+    scene: Scene,
+    model: Model,
+    distances: np.ndarray,
+    watch: Callable[[float], None] = lambda share: None,
+) -> Push:
+    """Push ``scene`` with rigid bodies under displacement control.
+
+    The scene first settles under its own weight; the displacement after that counts as 0.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : Model
+    distances : (k,) float
+        Increasing distances of the pusher, from 0 [m]; each gets an equal share of `DURATION`.
+    watch : callable
+        Told the finished share of the push, 0 to 1.
+
+    Returns
+    -------
+    Push
+
+    Raises
+    ------
+    SolverError
+        When a step cannot be taken.
+    """
+    assembly, origin = _settled(scene, model)
+    space, structure, pusher = assembly.space, assembly.structure, assembly.pusher
+    direction = np.array(scene.push_direction())
+    steps = max(1, round(DURATION / model.dt))
+    travel = np.interp(np.linspace(0.0, 1.0, steps + 1), np.linspace(0.0, 1.0, len(distances)), distances)
+    gap = np.empty(steps)
+    force = np.empty(steps)
+    newton_before = structure.newton_steps
+    started = time.perf_counter()
+    for k in range(steps):
+        # Chipmunk moves bodies first and solves for the velocities of the next move: the pusher is put one move back,
+        # so that it stands at travel[k] when the forces are sought that hold at travel[k + 1].
+        speed = (travel[k + 1] - travel[k]) / model.dt
+        pusher.position = tuple(origin + (2.0 * travel[k] - travel[k + 1]) * direction)
+        pusher.velocity = (speed * direction[0], speed * direction[1])
+        space.step(model.dt)
+        gap[k], force[k] = structure.deformation[-1, 0], structure.force[-1, 0]
+        if k % 64 == 0:
+            structure.check()
+            watch(k / steps)
+    seconds = time.perf_counter() - started
+    structure.check()
+    return Push(
+        displacement=np.append(0.0, travel[1:] + gap),
+        load=np.append(0.0, -force),
+        bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
+        joints=len(assembly.places),
+        steps=steps,
+        seconds=seconds,
+        simulated_seconds=steps * model.dt,
+        newton_steps=(structure.newton_steps - newton_before) / steps,
+        unconverged=structure.unconverged,
+        dissipated=float(structure.dissipated.sum()),
+    )
+
+
+def _settled(scene: Scene, model: Model) -> tuple[Assembly, np.ndarray]:
+    """The scene at rest under its own weight, with the pusher at the pushed node; and where that is."""
+    assembly = assemble(scene, model)
+    place = np.array(scene.nodes[scene.push.node].at)
+    if scene.gravity == 0.0:
+        return assembly, place
+    structure, last = assembly.structure, len(assembly.structure.joints) - 1
+    spring = structure.joints[last].law
+    structure.change_law(last, ElasticPlastic((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    for _ in range(_MOST_SETTLING_STEPS):
+        assembly.space.step(SETTLING_STEP)
+        structure.check()
+        speed = max(body.velocity.length for body in structure.bodies)
+        if speed * SETTLING_STEP < 1e-9 * scene.push.distance:
+            break
+    else:
+        raise SolverError("the scene does not come to rest under its own weight; support it, or make it stronger")
+    place = np.array(assembly.pushed_point())
+    structure.change_law(last, spring)
+    return assembly, place

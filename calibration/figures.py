@@ -7,6 +7,7 @@ import io
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import StrMethodFormatter
 
 from calibration.tuning import Calibration
 
@@ -65,18 +66,22 @@ def frontier(result: Calibration) -> Figure:
         markers = {"lobatto": "o", "equal": "s"}
         colours = {"elastic-plastic": _FAINT, "fibre": _MODEL}
         for (rule, law), points in sorted(groups.items()):
-            axes.scatter(
-                *zip(*points, strict=True), s=26, marker=markers[rule], color=colours[law], label=f"{rule}, {law}"
-            )
+            cost, error = zip(*points, strict=True)
+            axes.scatter(cost, error, s=26, marker=markers[rule], color=colours[law], label=f"{rule}, {law}")
         best = result.best
-        x, y = 1e3 * best.push.seconds_per_simulated_second, 100.0 * best.errors.path_max
-        axes.scatter([x], [y], s=120, facecolors="none", edgecolors=_INK, linewidths=1.4, label="chosen")
+        chosen = (1e3 * best.push.seconds_per_simulated_second, 100.0 * best.errors.path_max)
+        axes.scatter(
+            [chosen[0]], [chosen[1]], s=120, facecolors="none", edgecolors=_INK, linewidths=1.4, label="chosen"
+        )
         axes.axhline(100.0 * result.target_error, color=_INK, lw=1.0, ls=(0, (4, 2)))
         axes.annotate(
             "target", (1.0, 100.0 * result.target_error), xycoords=("axes fraction", "data"), ha="right", va="bottom"
         )
         axes.set_yscale("log")
         axes.set_xscale("log")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+            axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
         axes.set_xlabel("computing time for a simulated second [ms]")
         axes.set_ylabel("path error [% of peak load]")
         axes.legend(loc="best", fontsize=9)

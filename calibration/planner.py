@@ -20,7 +20,11 @@ def relative_cost(model: Model) -> float:
 
 
 def candidates() -> list[Model]:
-    """Models in order of `relative_cost`: rules, numbers of joints, laws, fibres and steps that are worth trying."""
+    """Models in order of `relative_cost`: rules, numbers of joints, laws, fibres and steps that are worth trying.
+
+    Two iterations throughout: a structure is solved whole in each, and where nothing else acts on it the second only
+    finds that nothing is left to do.
+    """
     models = []
     for dt in _STEPS:
         models += [Model("lobatto", joints, "elastic-plastic", dt=dt) for joints in _HINGES]

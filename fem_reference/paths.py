@@ -12,7 +12,7 @@ from fem_reference.frame import Frame
 #: Energy r · K⁻¹ r of the out-of-balance forces r allowed in a converged step, as a share of the work λ p · d: its
 #: root is the relative error of a force. (The forces themselves are no measure: in a very short element they carry
 #: rounding errors that do no work.)
-TOLERANCE = 1e-14
+TOLERANCE = 1e-18
 _MOST_ITERATIONS = 25
 _SMALLEST_CUT = 2.0**-12
 
@@ -26,7 +26,7 @@ def push(
     pattern: np.ndarray,
     distances: np.ndarray,
     watch: Callable[[float], None] = lambda share: None,
-) -> np.ndarray:
+) -> tuple[np.ndarray, float]:
     """Loads λ at which the frame's displacement along ``pattern`` reaches each of ``distances``.
 
     The displacement at λ = 0, under own weight alone, counts as distance 0. Solves
@@ -47,8 +47,10 @@ def push(
 
     Returns
     -------
-    (k,) float
+    loads : (k,) float
         λ at each distance [N].
+    imbalance : float
+        Largest force by which the whole frame is out of balance along the push, over the largest λ [-].
 
     Raises
     ------
@@ -59,11 +61,13 @@ def push(
     solver.carry_weight()
     start = float(pattern @ solver.displacement)
     loads = np.empty(len(distances))
+    imbalance = 0.0
     for i, distance in enumerate(distances):
         solver.move_to(start + float(distance))
         loads[i] = solver.load
+        imbalance = max(imbalance, solver.imbalance)
         watch((i + 1) / len(distances))
-    return loads
+    return loads, imbalance / float(np.abs(loads).max())
 
 
 class _Newton:
@@ -76,6 +80,8 @@ class _Newton:
         self.displacement = np.zeros(frame.size)
         self.plastic_strain = frame.undeformed()
         self.load = 0.0
+        self.imbalance = 0.0
+        self._translation = _translation(frame, pattern)[self.solver.free]
         # Change of displacement and load per metre of the push in the last step, to predict the next.
         self.slope: tuple[np.ndarray, float] | None = None
 
@@ -128,7 +134,16 @@ class _Newton:
             if abs(residual @ change) <= TOLERANCE * abs(load * goal) and abs(gap) <= 1e-9 * abs(goal):
                 self.slope = ((d - self.displacement) / distance, (load - self.load) / distance)
                 self.displacement, self.plastic_strain, self.load = d, plastic, load
+                self.imbalance = abs(float(residual @ self._translation))
                 return True
             d[free] += change
             load += rise
         return False
+
+
+def _translation(frame: Frame, pattern: np.ndarray) -> np.ndarray:
+    """Displacements of all nodes by one metre along the force in ``pattern``, (size,)."""
+    node = next(dofs for dofs in frame.node_dofs.values() if pattern[dofs].any())
+    whole = np.zeros(frame.size)
+    whole[frame.dofs[:, [0, 3]]], whole[frame.dofs[:, [1, 4]]] = pattern[node[:2]]
+    return whole

@@ -71,7 +71,7 @@ RESULT_WORDS = 8
 OK, NOT_FINITE = 0, 1
 
 _MOST_NEWTON_STEPS = 40
-_MOST_SEARCHES = 8
+_MOST_SEARCHES = 12
 
 
 @njit
@@ -119,13 +119,29 @@ def prepare(n, joint_bodies, body_at, geometry, settings, jacobian, deformation)
 
 @njit
 def respond(  # type: ignore[no-untyped-def]
-    n, moving, joint_bodies, body_at, laws, settings, jacobian, deformation, impulse, velocity, response, residual
+    n,
+    moving,
+    joint_bodies,
+    body_at,
+    laws,
+    stiffness,
+    settings,
+    jacobian,
+    deformation,
+    impulse,
+    velocity,
+    response,
+    residual,
+    predicting,
 ):
-    """Residual r of every joint at the present velocities; returns its energy and the scale to judge it by."""
+    """Residual r of every joint at the present velocities; returns its energy and the scale to judge it by.
+
+    While ``predicting``, every law is replaced by its elastic line through the deformation qₙ at the step's start.
+    """
     h = settings[STEP]
     reach = h * (settings[BETA] + settings[DELTA])
     error, scale = 0.0, 0.0
-    q = np.empty(3)
+    q, move = np.empty(3), np.empty(3)
     for k in range(n):
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         j, va, vb = jacobian[k], velocity[ia], velocity[ib]
@@ -133,8 +149,16 @@ def respond(  # type: ignore[no-untyped-def]
             m = 6 * i
             rate = j[m] * va[0] + j[m + 1] * va[1] + j[m + 2] * va[2]
             rate += j[m + 3] * vb[0] + j[m + 4] * vb[1] + j[m + 5] * vb[2]
-            q[i] = deformation[k, i] + reach * rate
+            move[i] = reach * rate
+            q[i] = deformation[k, i] if predicting else deformation[k, i] + move[i]
         call_law(laws[k, 0], laws[k, 2], laws[k, 3], q.ctypes.data, response[k].ctypes.data)
+        if predicting:
+            e, r = stiffness[k], response[k]
+            r[0] += e[0] * move[0] + e[1] * move[1] + e[2] * move[2]
+            r[1] += e[1] * move[0] + e[3] * move[1] + e[4] * move[2]
+            r[2] += e[2] * move[0] + e[4] * move[1] + e[5] * move[2]
+            for i in range(6):
+                r[3 + i] = e[i]
         for i in range(3):
             residual[k, i] = -h * response[k, i] - impulse[k, i]
         for side in range(2):
@@ -157,9 +181,9 @@ def respond(  # type: ignore[no-untyped-def]
 
 @njit
 def assemble(  # type: ignore[no-untyped-def]
-    n, moving, joint_bodies, body_at, joint_slot, factor, tangents, offset, jacobian, diagonal, lower
+    n, moving, joint_bodies, body_at, joint_slot, factor, response, jacobian, diagonal, lower
 ):
-    """M + factor Jᵀ D J as 3 × 3 blocks; D is in ``tangents`` from column ``offset``."""
+    """M + factor Jᵀ D J as 3 × 3 blocks, D from the joints' last response."""
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)
         diagonal[i, :] = 0.0
@@ -172,9 +196,9 @@ def assemble(  # type: ignore[no-untyped-def]
     for k in range(n):
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         j = jacobian[k]
-        t = tangents[k]
-        d00, d01, d02 = factor * t[offset], factor * t[offset + 1], factor * t[offset + 2]
-        d11, d12, d22 = factor * t[offset + 3], factor * t[offset + 4], factor * t[offset + 5]
+        t = response[k]
+        d00, d01, d02 = factor * t[3], factor * t[4], factor * t[5]
+        d11, d12, d22 = factor * t[6], factor * t[7], factor * t[8]
         for c in range(3):
             x, y, z = j[c], j[6 + c], j[12 + c]
             left[0, c] = d00 * x + d01 * y + d02 * z
@@ -311,6 +335,26 @@ def advance(n, moving, share, joint_bodies, body_at, jacobian, slope, impulse, v
 
 
 @njit
+def linearise(  # type: ignore[no-untyped-def]
+    n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope
+):
+    """Δλ = r - factor D J ΔV."""
+    for k in range(n):
+        j, d = jacobian[k], response[k]
+        x, y, z = 0.0, 0.0, 0.0
+        for side in range(2):
+            body = joint_bodies[k, side]
+            if body < moving:
+                o, v = 3 * side, solution[body]
+                x += j[o] * v[0] + j[o + 1] * v[1] + j[o + 2] * v[2]
+                y += j[6 + o] * v[0] + j[7 + o] * v[1] + j[8 + o] * v[2]
+                z += j[12 + o] * v[0] + j[13 + o] * v[1] + j[14 + o] * v[2]
+        slope[k, 0] = residual[k, 0] - factor * (d[3] * x + d[4] * y + d[5] * z)
+        slope[k, 1] = residual[k, 1] - factor * (d[4] * x + d[6] * y + d[7] * z)
+        slope[k, 2] = residual[k, 2] - factor * (d[5] * x + d[7] * y + d[8] * z)
+
+
+@njit
 def descent(n, moving, joint_bodies, jacobian, residual, direction):  # type: ignore[no-untyped-def]
     """r · J ΔV: how fast the incremental energy falls along ΔV."""
     total = 0.0
@@ -346,48 +390,40 @@ def solve(c, h):  # type: ignore[no-untyped-def]
         b = floats(body_at[i], BODY_WORDS)
         velocity[i, 0], velocity[i, 1], velocity[i, 2] = b[VX], b[VX + 1], b[SPIN]
     factor = h * h * (settings[BETA] + settings[DELTA])
-    error, scale = respond(
-        n, moving, joint_bodies, body_at, laws, settings, jacobian, deformation, impulse, velocity, response, residual
-    )
+    tolerance = settings[TOLERANCE]
+    # The first solve of a step takes every joint as elastic: at the velocities without joints all of them may seem to
+    # yield, and from there the way to the solution is long.
+    predicting = t[FRESH] == 1
+    t[FRESH] = 0
     t[SOLVES] += 1
-    converged = error <= settings[TOLERANCE] * scale
+    error, scale = respond(
+        n,
+        moving,
+        joint_bodies,
+        body_at,
+        laws,
+        stiffness,
+        settings,
+        jacobian,
+        deformation,
+        impulse,
+        velocity,
+        response,
+        residual,
+        predicting,
+    )
+    converged = not predicting and error <= tolerance * scale
     best = error
     for step in range(_MOST_NEWTON_STEPS):
         if converged:
             break
         t[NEWTON_STEPS] += 1
-        # The elastic tangent bounds every law's from above, so a first step with it always descends; the tangent at
-        # the free velocities, where all may seem to yield, is a poor guide.
-        if t[FRESH] == 1:
-            assemble(n, moving, joint_bodies, body_at, joint_slot, factor, stiffness, 0, jacobian, diagonal, lower)
-        else:
-            assemble(n, moving, joint_bodies, body_at, joint_slot, factor, response, 3, jacobian, diagonal, lower)
+        assemble(n, moving, joint_bodies, body_at, joint_slot, factor, response, jacobian, diagonal, lower)
         factorise(moving, column_start, column_rows, targets, diagonal, lower, scaled)
         gather(n, moving, joint_bodies, jacobian, residual, solution)
         substitute(moving, column_start, column_rows, diagonal, scaled, solution)
-        for k in range(n):
-            j = jacobian[k]
-            d0, d1, d2 = 0.0, 0.0, 0.0
-            for side in range(2):
-                body = joint_bodies[k, side]
-                if body < moving:
-                    o, x = 3 * side, solution[body]
-                    d0 += j[o] * x[0] + j[o + 1] * x[1] + j[o + 2] * x[2]
-                    d1 += j[6 + o] * x[0] + j[7 + o] * x[1] + j[8 + o] * x[2]
-                    d2 += j[12 + o] * x[0] + j[13 + o] * x[1] + j[14 + o] * x[2]
-            if t[FRESH] == 1:
-                k00, k01, k02 = stiffness[k, 0], stiffness[k, 1], stiffness[k, 2]
-                k11, k12, k22 = stiffness[k, 3], stiffness[k, 4], stiffness[k, 5]
-            else:
-                k00, k01, k02 = response[k, 3], response[k, 4], response[k, 5]
-                k11, k12, k22 = response[k, 6], response[k, 7], response[k, 8]
-            slope[k, 0] = residual[k, 0] - factor * (k00 * d0 + k01 * d1 + k02 * d2)
-            slope[k, 1] = residual[k, 1] - factor * (k01 * d0 + k11 * d1 + k12 * d2)
-            slope[k, 2] = residual[k, 2] - factor * (k02 * d0 + k12 * d1 + k22 * d2)
-        t[FRESH] = 0
+        linearise(n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope)
         start = descent(n, moving, joint_bodies, jacobian, residual, solution)
-        share, low, high = 1.0, 0.0, 1.0
-        fall_low, fall_high = start, 0.0
         advance(n, moving, 1.0, joint_bodies, body_at, jacobian, slope, impulse, velocity)
         error, scale = respond(
             n,
@@ -395,6 +431,7 @@ def solve(c, h):  # type: ignore[no-untyped-def]
             joint_bodies,
             body_at,
             laws,
+            stiffness,
             settings,
             jacobian,
             deformation,
@@ -402,43 +439,52 @@ def solve(c, h):  # type: ignore[no-untyped-def]
             velocity,
             response,
             residual,
+            False,
         )
-        converged = error <= settings[TOLERANCE] * scale
-        if not converged:
-            fall_high = descent(n, moving, joint_bodies, jacobian, residual, solution)
-            # Along the step the energy is convex: where it rises too steeply the least value lies further back.
-            if fall_high < -0.5 * start:
-                for _ in range(_MOST_SEARCHES):
-                    new = low + (high - low) * fall_low / (fall_low - fall_high)
-                    new = min(max(new, low + 0.1 * (high - low)), high - 0.1 * (high - low))
-                    advance(n, moving, new - share, joint_bodies, body_at, jacobian, slope, impulse, velocity)
-                    share = new
-                    error, scale = respond(
-                        n,
-                        moving,
-                        joint_bodies,
-                        body_at,
-                        laws,
-                        settings,
-                        jacobian,
-                        deformation,
-                        impulse,
-                        velocity,
-                        response,
-                        residual,
-                    )
-                    fall = descent(n, moving, joint_bodies, jacobian, residual, solution)
-                    if abs(fall) <= 0.3 * start:
-                        break
-                    if fall > 0.0:
-                        low, fall_low = new, fall
-                    else:
-                        high, fall_high = new, fall
-                converged = error <= settings[TOLERANCE] * scale
-            # Below this it is rounding that remains, and another step would not take it away.
-            if step >= 3 and error >= 0.25 * best and error <= 1e6 * settings[TOLERANCE] * scale:
-                converged = True
-            best = min(best, error)
+        converged = error <= tolerance * scale
+        if converged:
+            break
+        if predicting:
+            predicting = False
+            best = error
+            continue
+        # Along the step the energy is convex: where it rises too steeply at the end, its least value lies before.
+        fall = descent(n, moving, joint_bodies, jacobian, residual, solution)
+        if fall < -0.5 * start:
+            share, low, high, fall_low, fall_high = 1.0, 0.0, 1.0, start, fall
+            for _ in range(_MOST_SEARCHES):
+                new = low + (high - low) * fall_low / (fall_low - fall_high)
+                new = min(max(new, low + 0.05 * (high - low)), high - 0.05 * (high - low))
+                advance(n, moving, new - share, joint_bodies, body_at, jacobian, slope, impulse, velocity)
+                share = new
+                error, scale = respond(
+                    n,
+                    moving,
+                    joint_bodies,
+                    body_at,
+                    laws,
+                    stiffness,
+                    settings,
+                    jacobian,
+                    deformation,
+                    impulse,
+                    velocity,
+                    response,
+                    residual,
+                    False,
+                )
+                fall = descent(n, moving, joint_bodies, jacobian, residual, solution)
+                if abs(fall) <= 0.3 * start:
+                    break
+                if fall > 0.0:
+                    low, fall_low = new, fall
+                else:
+                    high, fall_high = new, fall
+            converged = error <= tolerance * scale
+        # Below this it is rounding that remains, and another step would not take it away.
+        if step >= 3 and error >= 0.25 * best and error <= 1e6 * tolerance * scale:
+            converged = True
+        best = min(best, error)
     settings[LAST_RESIDUAL] = math.sqrt(error / scale) if scale > 0.0 else 0.0
     finite = True
     for i in range(moving):

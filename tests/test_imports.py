@@ -1,0 +1,71 @@
+"""Imports go one way: scene and capacity feed fem_reference and sim, calibration sits on all of them."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PACKAGES = ("capacity", "scene", "fem_reference", "sim", "calibration")
+MAY_IMPORT = {
+    "capacity": set(),
+    "scene": {"capacity"},
+    "fem_reference": {"scene", "capacity"},
+    "sim": {"scene", "capacity"},
+    "calibration": {"scene", "capacity", "fem_reference", "sim"},
+}
+WORKS_WITHOUT = {
+    "capacity": ("pymunk", "skfem", "numba"),
+    "scene": ("pymunk", "skfem", "numba"),
+    "fem_reference": ("pymunk", "numba"),
+    "sim": ("skfem",),
+}
+
+
+def imported(path: Path) -> set[str]:
+    """Top-level packages that a file imports anywhere in it."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: a relative import hides where it goes"
+            names.add((node.module or "").split(".")[0])
+    return names
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_imports_go_downstream_only(package: str) -> None:
+    files = list((ROOT / package).rglob("*.py"))
+    assert files
+    for path in files:
+        forbidden = (imported(path) & set(PACKAGES)) - MAY_IMPORT[package] - {package}
+        assert not forbidden, f"{path.relative_to(ROOT)} imports {forbidden}"
+
+
+@pytest.mark.parametrize("package", WORKS_WITHOUT)
+def test_package_works_without_what_it_does_not_need(package: str) -> None:
+    blocked = WORKS_WITHOUT[package]
+    code = f"import sys; sys.modules.update(dict.fromkeys({blocked!r})); import {package}"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_only_chipmunk_py_knows_cffi() -> None:
+    for path in (ROOT / "sim").rglob("*.py"):
+        if path.name != "chipmunk.py":
+            assert "_chipmunk_cffi" not in path.read_text(encoding="utf-8"), path
+
+
+def test_command_line_starts_without_the_heavy_libraries() -> None:
+    heavy = ("numba", "skfem", "scipy.linalg", "matplotlib", "pymunk", "shapely", "meshio")
+    code = (
+        "import sys; from calibration.cli import main\n"
+        "try: main(['capacity', 'IPE 300', '--json'])\n"
+        "except SystemExit as end: assert end.code == 0\n"
+        f"assert not set({heavy!r}) & set(sys.modules), set({heavy!r}) & set(sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stderr

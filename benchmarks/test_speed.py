@@ -1,0 +1,83 @@
+"""Speed of the main parts; run with ``pytest benchmarks``. Compare within one run: machines differ and drift."""
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from capacity import capacity, parse_material, parse_section
+from fem_reference import pushover
+from scene import load_scene
+from sim import ElasticPlastic, Joint, Structure
+
+STEEL = parse_material("fy=235 MPa, E=200 GPa, rho=7800 kg/m^3")
+SECTION = parse_section("rectangle 100x100 mm")
+
+
+def chain(pieces: int, piece: float = 0.04) -> tuple[pymunk.Space, Structure]:
+    """A steel cantilever of equal pieces, 50 of them 2 m long, in a gravity that bends its root alike at any length."""
+    c = capacity(SECTION, STEEL)
+    space = pymunk.Space()
+    space.gravity, space.iterations = (0.0, -9.81 * (50 / pieces) ** 2), 2
+    bodies = [space.static_body]
+    for i in range(pieces):
+        mass = STEEL.density * SECTION.area * piece
+        body = pymunk.Body(mass, mass * piece**2 / 12)
+        body.position = ((i + 0.5) * piece, 0.0)
+        space.add(body)
+        bodies.append(body)
+    joints = []
+    for i in range(pieces):
+        share = piece * (0.5 if i == 0 else 1.0)
+        law = ElasticPlastic((c.EA / share, c.GA_s / share, c.EI / share), (c.N_max, c.Q_max, c.M_max))
+        joints.append(Joint(bodies[i], bodies[i + 1], (i * piece, 0.0), 0.0, law))
+    structure = Structure(joints)
+    space.add(structure)
+    for _ in range(120):
+        space.step(1 / 60)
+    return space, structure
+
+
+@pytest.mark.parametrize("pieces", [10, 50, 1000, 10000])
+def test_elastic_chain_step(benchmark: BenchmarkFixture, pieces: int) -> None:
+    """One step of a chain at 1/60 s; µs a joint is in the extra column."""
+    space, structure = chain(pieces)
+    steps = max(1, 2000 // pieces)
+
+    def run() -> None:
+        for _ in range(steps):
+            space.step(1 / 60)
+
+    benchmark(run)
+    benchmark.extra_info["microseconds_per_joint_step"] = 1e6 * benchmark.stats.stats.median / (steps * pieces)
+    assert structure.unconverged == 0
+
+
+def test_stock_pymunk_joints(benchmark: BenchmarkFixture) -> None:
+    """The same 50 pieces with pivot and gear joints at 10 iterations: not the same answer, but a measure of cost."""
+    space = pymunk.Space()
+    space.gravity, space.iterations = (0.0, -9.81), 10
+    last = space.static_body
+    for i in range(50):
+        body = pymunk.Body(3.12, 3.12 * 0.04**2 / 12)
+        body.position = (0.04 * i + 0.02, 0.0)
+        pivot, gear = pymunk.PivotJoint(last, body, (0.04 * i, 0.0)), pymunk.GearJoint(last, body, 0.0, 1.0)
+        space.add(body, pivot, gear)
+        last = body
+
+    def run() -> None:
+        for _ in range(40):
+            space.step(1 / 60)
+
+    benchmark(run)
+    benchmark.extra_info["microseconds_per_joint_step"] = 1e6 * benchmark.stats.stats.median / (40 * 50)
+    assert math.isfinite(last.position.y)
+
+
+def test_reference_pushover(benchmark: BenchmarkFixture) -> None:
+    """The built-in cantilever, all refinements."""
+    answer = benchmark(pushover, load_scene("cantilever"))
+    assert answer.error_estimate <= 5e-4
+    assert np.isfinite(answer.load).all()

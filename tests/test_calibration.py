@@ -1,0 +1,78 @@
+"""What calibration decides, on other members than the built-in one."""
+
+import numpy as np
+import pytest
+from cantilevers import SECTIONS, cantilever, reference_cantilever
+from conftest import CASES
+
+from calibration import calibrate
+from calibration.planner import candidates, relative_cost
+
+
+@pytest.mark.parametrize("name", SECTIONS)
+@pytest.mark.parametrize("target", [0.01, 0.004])
+def test_target_is_met_and_the_model_follows_the_closed_form(name: str, target: float) -> None:
+    """Cases C1: the model's own distance from the closed form is the one reported, within the reference's error."""
+    result = calibrate(reference_cantilever(CASES[name]), target)
+    outputs = CASES[name]["outputs"]
+    assert result.target_met
+    x, exact = np.array(outputs["delta_over_dy"]) * outputs["delta_y_m"], np.array(outputs["P_N"])
+    load = np.interp(x, result.best.push.displacement, result.best.push.load)
+    assert np.abs(load - exact).max() / exact.max() <= target + result.reference.error_estimate
+    if target == 0.01:
+        assert result.best.push.bodies <= 8
+
+
+def test_shear_flexibility_is_in_both_models() -> None:
+    scene = cantilever("rectangle 50x100 mm", 0.4, 0.012, theory="timoshenko")
+    result = calibrate(scene, 0.01)
+    c = scene.capacity("beam")
+    stiffness = 1.0 / (0.4**3 / (3.0 * c.EI) + 0.4 / c.GA_s)
+    for curve in (result.reference, result.best.push):
+        early = (curve.load > 0.0) & (curve.load < 0.4 * curve.load.max())
+        slope = curve.displacement[early] @ curve.load[early] / (curve.displacement[early] @ curve.displacement[early])
+        assert slope == pytest.approx(stiffness, rel=3e-3)
+
+
+def test_own_weight_is_carried_before_the_push() -> None:
+    """Collapse at P = (M_p - q L² / 2) / L, in the reference and in the model."""
+    scene = cantilever("rectangle 20x40 mm", 2.0, 0.3, gravity=9.81)
+    collapse = (scene.capacity("beam").M_max - 7850 * 9.81 * 0.0008 * 2.0) / 2.0
+    result = calibrate(scene, 0.02)
+    assert result.target_met
+    assert result.reference.load[-1] == pytest.approx(collapse, rel=1e-3)
+    assert result.best.push.load.max() == pytest.approx(collapse, rel=0.02)
+
+
+def test_hardening_is_in_both_models() -> None:
+    scene = cantilever("rectangle 50x100 mm", 1.0, 0.05)
+    hard = type(scene)(
+        title="hardening",
+        nodes=scene.nodes,
+        members={
+            "beam": type(scene.members["beam"])(
+                start="root",
+                end="tip",
+                section=scene.members["beam"].section,
+                material=type(scene.members["beam"].material)("", 210e9, 235e6, 7850.0, 0.3, 0.02 * 210e9),
+                theory="euler-bernoulli",
+            )
+        },
+        push=scene.push,
+        gravity=scene.gravity,
+    )
+    result = calibrate(hard, 0.01)
+    assert result.target_met
+    assert result.reference.load[-1] > 1.05 * 29375.0
+
+
+def test_models_are_tried_from_cheap_to_dear() -> None:
+    costs = [relative_cost(model) for model in candidates()]
+    assert costs == sorted(costs)
+    assert len(set(candidates())) == len(costs)
+
+
+@pytest.mark.parametrize("target", [0.0, -0.1, 1.0])
+def test_impossible_targets_are_refused(target: float) -> None:
+    with pytest.raises(ValueError, match="between 0 and 1"):
+        calibrate(cantilever("rectangle 50x100 mm", 1.0, 0.05), target)

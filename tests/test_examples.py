@@ -1,0 +1,42 @@
+"""Every example runs and gives its number; the README quotes the same."""
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+EXAMPLES = {
+    "01_capacity": (147.7, 0.05),  # kN m: W_pl = 628.4 cm³ (EN 10365 tables) times 235 MPa
+    "02_reference": (29.375, 0.001),  # kN: b h² fy / 4 L
+    "03_joints_in_a_space": (-0.80, 0.01),  # rad: work of the load beyond M_max over M_max, see the docstring
+    "04_calibrate": (0.67, 0.01),  # % of the peak load
+}
+
+
+def run(name: str) -> float:
+    spec = importlib.util.spec_from_file_location(name, ROOT / "examples" / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return float(module.main())
+
+
+def test_every_example_is_tested() -> None:
+    assert {path.stem for path in (ROOT / "examples").glob("*.py")} == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example(name: str) -> None:
+    value, tolerance = EXAMPLES[name]
+    assert run(name) == pytest.approx(value, abs=tolerance)
+
+
+def test_readme_quotes_the_examples(capsys: pytest.CaptureFixture[str]) -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"within {run('04_calibrate'):.2f} %" in readme
+    said = capsys.readouterr().out
+    assert said.startswith("5 bodies")
+    assert "five rigid bodies" in readme
+    assert f"{run('01_capacity'):.1f} kN m" in readme

@@ -7,7 +7,9 @@ _HINGES = (3, 5, 8)
 _LOBATTO = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 17, 20)
 _EQUAL = (5, 9, 17, 33)
 _FIBRES = (8, 12, 16, 24)
-_STEPS = (1.0 / 60.0, 1.0 / 240.0)
+# Where more joints and fibres no longer help it may be the step: the finest models again, stepped finer.
+_FINE_STEPPING = ((1.0 / 240.0, 2), (1.0 / 1000.0, 4))
+_FINE_JOINTS = (10, 20)
 
 
 def relative_cost(model: Model) -> float:
@@ -20,16 +22,17 @@ def relative_cost(model: Model) -> float:
 
 
 def candidates() -> list[Model]:
-    """Models in order of `relative_cost`: rules, numbers of joints, laws, fibres and steps that are worth trying.
+    """Models in order of `relative_cost`: rules, numbers of joints, laws, fibres, steps and iterations worth trying.
 
-    Two iterations throughout: a structure is solved whole in each, and where nothing else acts on it the second only
-    finds that nothing is left to do.
+    Two iterations do: a structure is solved whole in each, and where nothing else acts on it the second only finds
+    that nothing is left to do.
     """
-    models = []
-    for dt in _STEPS:
-        models += [Model("lobatto", joints, "elastic-plastic", dt=dt) for joints in _HINGES]
-        for joints in _LOBATTO:
-            models += [Model("lobatto", joints, "fibre", fibres, dt) for fibres in _FIBRES]
-        for joints in _EQUAL:
-            models += [Model("equal", joints, "fibre", fibres, dt) for fibres in _FIBRES]
+    models = [Model("lobatto", joints, "elastic-plastic") for joints in _HINGES]
+    models += [Model("lobatto", joints, "fibre", fibres) for joints in _LOBATTO for fibres in _FIBRES]
+    models += [Model("equal", joints, "fibre", fibres) for joints in _EQUAL for fibres in _FIBRES]
+    models += [
+        Model("lobatto", joints, "fibre", _FIBRES[-1], dt, iterations)
+        for dt, iterations in _FINE_STEPPING
+        for joints in _FINE_JOINTS
+    ]
     return sorted(models, key=relative_cost)

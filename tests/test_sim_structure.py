@@ -94,7 +94,7 @@ def test_kernel_agrees_with_its_plain_twin(scheme: tuple[float, float], cap: flo
 
 
 @pytest.mark.parametrize("dt", [1 / 60, 1 / 240, 1 / 1000])
-@pytest.mark.parametrize(("rule", "joints"), [("lobatto", 3), ("lobatto", 5), ("lobatto", 8)])
+@pytest.mark.parametrize(("rule", "joints"), [("lobatto", 3), ("lobatto", 6), ("lobatto", 8)])
 def test_sag_under_own_weight_is_exact(rule: str, joints: int, dt: float) -> None:
     """q L⁴ / 8 EI at the tip of a cantilever, within 0.1 %, at any step, with two iterations."""
     scene = cantilever("rectangle 50x100 mm", 1.0, 0.01, gravity=9.81)

@@ -17,6 +17,7 @@ from sim.structure import SolverError
 #: How long a push takes in the simulation [s]: slow against the vibrations of ordinary members, which the implicit
 #: Euler scheme damps.
 DURATION = 4.0
+_EASE = 0.1
 #: Step while a scene settles under its own weight [s]; long, for the longer it is the more it damps.
 SETTLING_STEP = 1.0 / 60.0
 _MOST_SETTLING_STEPS = 10_000
@@ -85,7 +86,7 @@ def push_over(
     scene : Scene
     model : Model
     distances : (k,) float
-        Increasing distances of the pusher, from 0 [m]; each gets an equal share of `DURATION`.
+        Increasing distances of the pusher, from 0 [m]; each gets an equal share of `DURATION`, the first ones more.
     watch : callable
         Told the finished share of the push, 0 to 1.
 
@@ -102,7 +103,7 @@ def push_over(
     space, structure, pusher = assembly.space, assembly.structure, assembly.pusher
     direction = np.array(scene.push_direction())
     steps = max(1, round(DURATION / model.dt))
-    travel = np.interp(np.linspace(0.0, 1.0, steps + 1), np.linspace(0.0, 1.0, len(distances)), distances)
+    travel = np.interp(_eased(steps), np.linspace(0.0, 1.0, len(distances)), distances)
     gap = np.empty(steps)
     force = np.empty(steps)
     newton_before = structure.newton_steps
@@ -132,6 +133,13 @@ def push_over(
         unconverged=structure.unconverged,
         dissipated=float(structure.dissipated.sum()),
     )
+
+
+def _eased(steps: int) -> np.ndarray:
+    """Share of the way at each step, (steps + 1,): even, but for a start without a jerk."""
+    time = np.linspace(0.0, 1.0, steps + 1)
+    way = np.where(time < _EASE, time**2 / (2.0 * _EASE), time - 0.5 * _EASE)
+    return way / way[-1]
 
 
 def _settled(scene: Scene, model: Model) -> tuple[Assembly, np.ndarray]:

@@ -10,7 +10,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from capacity import capacity, parse_material, parse_section
 from fem_reference import pushover
 from scene import load_scene
-from sim import ElasticPlastic, Joint, Structure
+from sim import DuctileJoint, ElasticPlastic, Structure
 
 STEEL = parse_material("fy=235 MPa, E=200 GPa, rho=7800 kg/m^3")
 SECTION = parse_section("rectangle 100x100 mm")
@@ -32,9 +32,9 @@ def chain(pieces: int, piece: float = 0.04) -> tuple[pymunk.Space, Structure]:
     for i in range(pieces):
         share = piece * (0.5 if i == 0 else 1.0)
         law = ElasticPlastic((c.EA / share, c.GA_s / share, c.EI / share), (c.N_max, c.Q_max, c.M_max))
-        joints.append(Joint(bodies[i], bodies[i + 1], (i * piece, 0.0), 0.0, law))
+        joints.append(DuctileJoint(bodies[i], bodies[i + 1], (i * piece, 0.0), law, direction=0.0))
     structure = Structure(joints)
-    space.add(structure)
+    space.add(*joints)
     for _ in range(120):
         space.step(1 / 60)
     return space, structure

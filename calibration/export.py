@@ -14,7 +14,7 @@ import pymunk
 
 from calibration.tuning import Calibration, Trial
 from scene import Scene
-from sim import Joint, Model, assemble
+from sim import DuctileJoint, Model, assemble
 
 _LIBRARIES = ("ductile-joints", "numpy", "scipy", "scikit-fem", "pymunk", "numba")
 
@@ -127,7 +127,7 @@ def _body(body: pymunk.Body, label: str, span: tuple[float, float] | None) -> di
     }
 
 
-def _joint(joint: Joint, names: dict[pymunk.Body, str]) -> dict[str, Any]:
+def _joint(joint: DuctileJoint, names: dict[pymunk.Body, str]) -> dict[str, Any]:
     tangent = joint.law.elastic_tangent()
     law = {key: _plain(value) for key, value in asdict(joint.law).items()}  # type: ignore[call-overload]
     return {

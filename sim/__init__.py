@@ -4,19 +4,23 @@ from sim import chipmunk
 
 chipmunk.verify()
 
-from sim.laws import ElasticPlastic, FibreSection, Law  # noqa: E402  (nothing may run on structs that do not fit)
+from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits  # noqa: E402  (nothing may run on structs that do not fit)
+from sim.laws import ElasticPlastic, FibreSection, Law  # noqa: E402
 from sim.members import Assembly, Model, assemble  # noqa: E402
 from sim.pushover import Push, push_over  # noqa: E402
 from sim.rules import RULES, Rule, equal, lobatto  # noqa: E402
-from sim.structure import Joint, SolverError, Structure  # noqa: E402
+from sim.structure import SolverError, Structure  # noqa: E402
 
 __all__ = [
+    "AVERAGE_ACCELERATION",
+    "IMPLICIT_EULER",
     "RULES",
     "Assembly",
+    "DuctileJoint",
     "ElasticPlastic",
     "FibreSection",
-    "Joint",
     "Law",
+    "Limits",
     "Model",
     "Push",
     "Rule",

@@ -7,6 +7,8 @@ Offsets are in 8-byte words, for 64-bit builds of pymunk 7. `verify` holds them 
 its own setters, once, when `sim` is imported.
 """
 
+import math
+
 import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
@@ -14,17 +16,21 @@ from pymunk._chipmunk_cffi import ffi, lib
 #: pymunk versions that the offsets were taken from.
 KNOWN_VERSIONS = "7.3"
 
-BODY_WORDS = 17
-MASS = 2
-MOMENT = 4
+BODY_WORDS = 23
+MASS, MASS_INVERSE = 2, 3
+MOMENT, MOMENT_INVERSE = 4, 5
 X, Y = 8, 9
 VX, VY = 10, 11
 ANGLE = 14
 SPIN = 15
+# The body's transform: cos, sin, -sin, cos of the angle, and where its own origin is.
+COSINE, SINE, MINUS_SINE, COSINE_AGAIN, ORIGIN = 17, 18, 19, 20, 21
+CENTRE = 6
 
 # In cpConstraint: the function table first; the first words past its end belong to the kind of joint, here a pivot
 # joint's anchors, which nobody reads once its functions are replaced.
 _CLASS = 0
+CONSTRAINT_SPACE = 1
 _BODY_A, _BODY_B = 2, 3
 CONTROL = 13
 
@@ -53,8 +59,8 @@ def pivot(a: pymunk.Body, b: pymunk.Body) -> object:
     return lib.cpPivotJointNew2(a._body, b._body, (0.0, 0.0), (0.0, 0.0))
 
 
-def adopt(constraint: object, functions: np.ndarray, control: np.ndarray, after_step: int) -> None:
-    """Make Chipmunk call ``functions`` for ``constraint``.
+def adopt(constraint: object, functions: np.ndarray, after_step: int) -> None:
+    """Make Chipmunk call ``functions`` for ``constraint``; `assign` must have given it something to work on by then.
 
     Parameters
     ----------
@@ -62,15 +68,16 @@ def adopt(constraint: object, functions: np.ndarray, control: np.ndarray, after_
         From `pivot`.
     functions : (4,) int64
         Addresses of preStep, applyCachedImpulse, applyImpulse and getImpulse; must outlive the constraint.
-    control : int64 array
-        What the functions work on; they find its address at word `CONTROL`. Must outlive the constraint.
     after_step : int
         Address of a function (constraint, space) called when a step's impulses are final.
     """
-    struct = words(address(constraint), CONTROL + 1, np.int64)
-    struct[_CLASS] = functions.ctypes.data
-    struct[CONTROL] = control.ctypes.data
+    words(address(constraint), 1, np.int64)[_CLASS] = functions.ctypes.data
     lib.cpConstraintSetPostSolveFunc(constraint, ffi.cast("cpConstraintPostSolveFunc", after_step))
+
+
+def assign(constraint: object, control: np.ndarray, index: int) -> None:
+    """Give a constraint's functions their control table, which must outlive it, and its place in that."""
+    words(address(constraint), CONTROL + 2, np.int64)[CONTROL:] = control.ctypes.data, index
 
 
 def verify() -> None:
@@ -87,8 +94,10 @@ def verify() -> None:
     body.angle = 19.0
     body.angular_velocity = 23.0
     field = words(body_address(body), BODY_WORDS)
-    expected = {MASS: 3.0, MOMENT: 5.0, X: 7.0, Y: 11.0, VX: 13.0, VY: 17.0, ANGLE: 19.0, SPIN: 23.0}
-    fits = all(field[word] == value for word, value in expected.items())
+    expected = {MASS: 3.0, MASS_INVERSE: 1.0 / 3.0, MOMENT: 5.0, MOMENT_INVERSE: 1.0 / 5.0, X: 7.0, Y: 11.0}
+    expected |= {VX: 13.0, VY: 17.0, ANGLE: 19.0, SPIN: 23.0, COSINE: math.cos(19.0), SINE: math.sin(19.0)}
+    expected |= {MINUS_SINE: -math.sin(19.0), COSINE_AGAIN: math.cos(19.0), ORIGIN: 7.0, ORIGIN + 1: 11.0, CENTRE: 0.0}
+    fits = all(abs(field[word] - value) <= 1e-12 for word, value in expected.items())
 
     other = pymunk.Body(1.0, 1.0)
     joint = pymunk.PivotJoint(body, other, (29.0, 31.0), (37.0, 41.0))
@@ -96,6 +105,11 @@ def verify() -> None:
     anchors = words(location + 8 * CONTROL, 4)
     bodies = words(location, CONTROL, np.int64)
     fits &= bool(np.array_equal(anchors, [29.0, 31.0, 37.0, 41.0]))
+    space = pymunk.Space()
+    space.add(body, other, joint)
+    fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == address(space._space)
+    space.remove(joint)
+    fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == 0
     fits &= bodies[_BODY_A] == body_address(body) and bodies[_BODY_B] == body_address(other)
     if not fits:
         raise IncompatiblePymunk(

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import pymunk
 
 from scene import Scene
+from sim.joint import DuctileJoint
 from sim.laws import ElasticPlastic, FibreSection, Law
 from sim.rules import RULES, Rule
-from sim.structure import Joint, Structure
+from sim.structure import Structure
 
 #: A spring that counts as rigid is this much stiffer than the members it is tied to.
 RIGID = 1e2
@@ -94,7 +95,8 @@ class Assembly:
 
     def pushed_point(self) -> tuple[float, float]:
         """Where the pushed node is now [m]."""
-        x, y = self.structure.joints[-1].b.local_to_world(self.structure.anchors(-1)[1])
+        last = self.structure.joints[-1]
+        x, y = last.b.local_to_world((last.geometry[2], last.geometry[3]))
         return x, y
 
 
@@ -146,7 +148,7 @@ def assemble(scene: Scene, model: Model) -> Assembly:
     stiffest = max(scene.capacity(name).EA / scene.axis(name)[2] for name in scene.members)
     pusher = builder.add_pusher(RIGID * stiffest)
     structure = Structure(builder.joints)
-    space.add(structure)
+    space.add(*structure.joints)
     return Assembly(space, structure, tuple(builder.pieces), tuple(builder.places), pusher)
 
 
@@ -157,7 +159,7 @@ class _Builder:
         self.scene, self.model, self.rule, self.space = scene, model, rule, space
         self.pieces: list[Piece] = []
         self.places: list[JointPlace] = []
-        self.joints: list[Joint] = []
+        self.joints: list[DuctileJoint] = []
         self.meeting: dict[str, list[str]] = defaultdict(list)
         for name, member in scene.members.items():
             self.meeting[member.start].append(name)
@@ -230,7 +232,7 @@ class _Builder:
             pinned = (i == 0 and self._is_hinge(member.start)) or (b is chain[-1] and self._is_hinge(member.end))
             law = joint_law(self.scene, name, share, self.model, pinned)
             at = (x0 + c * position, y0 + s * position)
-            self.joints.append(Joint(a, b, at, math.atan2(s, c), law))
+            self.joints.append(DuctileJoint(a, b, at, law, direction=math.atan2(s, c), turn=0.5))
             self.places.append(JointPlace(name, position, share))
 
     def _beyond(self, node: str) -> pymunk.Body | None:
@@ -252,7 +254,9 @@ class _Builder:
             k = RIGID * max(self.scene.capacity(m).EA / self.scene.axis(m)[2] for m in names)
             turn = RIGID * max(self.scene.capacity(m).EI / self.scene.axis(m)[2] for m in names)
             law = ElasticPlastic((k, k, turn if kind == "clamped" else 0.0), (math.inf, math.inf, math.inf))
-            self.joints.append(Joint(self.space.static_body, body, self.scene.nodes[node].at, 0.0, law, turn=0.0))
+            self.joints.append(
+                DuctileJoint(self.space.static_body, body, self.scene.nodes[node].at, law, direction=0.0)
+            )
 
     def add_pusher(self, stiffness: float) -> pymunk.Body:
         """Kinematic body at the pushed node, tied to it along the push only."""
@@ -268,5 +272,5 @@ class _Builder:
         self.space.add(pusher)
         dx, dy = self.scene.push_direction()
         law = ElasticPlastic((stiffness, 0.0, 0.0), (math.inf, math.inf, math.inf))
-        self.joints.append(Joint(pusher, pushed, (x, y), math.atan2(dy, dx), law, turn=0.0))
+        self.joints.append(DuctileJoint(pusher, pushed, (x, y), law, direction=math.atan2(dy, dx)))
         return pusher

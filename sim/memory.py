@@ -35,6 +35,19 @@ def call_law(typing_context, function, parameters, state, deformation, out):  # 
     return types.void(*[types.int64] * 5), generate
 
 
+@intrinsic
+def call_notice(typing_context, function, key):  # type: ignore[no-untyped-def]
+    """Call the C function at ``function`` with one integer."""
+
+    def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+        word = ir.IntType(64)
+        pointer = builder.inttoptr(args[0], ir.FunctionType(ir.VoidType(), [word]).as_pointer())
+        builder.call(pointer, args[1:])
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64), generate
+
+
 @njit(inline="always")
 def floats(address, count):  # type: ignore[no-untyped-def]
     """``count`` float64 at ``address``."""

@@ -117,10 +117,8 @@ def push_over(
         space.step(model.dt)
         gap[k], force[k] = structure.deformation[-1, 0], structure.force[-1, 0]
         if k % 64 == 0:
-            structure.check()
             watch(k / steps)
     seconds = time.perf_counter() - started
-    structure.check()
     return Push(
         displacement=np.append(0.0, travel[1:] + gap),
         load=np.append(0.0, -force),
@@ -139,7 +137,8 @@ def _eased(steps: int) -> np.ndarray:
     """Share of the way at each step, (steps + 1,): even, but for a start without a jerk."""
     time = np.linspace(0.0, 1.0, steps + 1)
     way = np.where(time < _EASE, time**2 / (2.0 * _EASE), time - 0.5 * _EASE)
-    return way / way[-1]
+    share: np.ndarray = way / way[-1]
+    return share
 
 
 def _settled(scene: Scene, model: Model) -> tuple[Assembly, np.ndarray]:
@@ -153,7 +152,6 @@ def _settled(scene: Scene, model: Model) -> tuple[Assembly, np.ndarray]:
     structure.change_law(last, ElasticPlastic((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
     for _ in range(_MOST_SETTLING_STEPS):
         assembly.space.step(SETTLING_STEP)
-        structure.check()
         speed = max(body.velocity.length for body in structure.bodies)
         if speed * SETTLING_STEP < 1e-9 * scene.push.distance:
             break

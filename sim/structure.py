@@ -1,160 +1,154 @@
-"""A structure: pymunk bodies and the joints between them, solved as one Chipmunk constraint."""
+"""Structures: joints that share bodies, and the memory in which they are solved together."""
 
 from __future__ import annotations
 
-import math
+import ctypes
+import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from weakref import WeakValueDictionary
 
 import numpy as np
 import pymunk
 
-from sim import chipmunk, kernels
+from sim import chipmunk
+from sim.joint import DuctileJoint
+from sim.kernels import layout as at
 from sim.laws import Law
 from sim.ordering import minimum_degree
 
+_TOLERANCE = 1e-9
+
 
 class SolverError(RuntimeError):
-    """A step that could not be taken."""
+    """A step that was refused."""
 
 
-@dataclass(frozen=True)
-class Joint:
-    """A joint from body ``a`` to body ``b``; free of force as the bodies lie when the structure is built.
+class Structure:
+    """Joints that are solved as one; views of what they bear, as arrays over the joints.
 
-    Parameters
-    ----------
-    a, b : pymunk.Body
-        At least one of them dynamic.
-    at : (float, float)
-        World position of the joint [m].
-    direction : float
-        Angle of the joint's x axis, from a to b along the member [rad].
-    law : Law
-    turn : float
-        Share of b's rotation that the joint's axes follow; the rest is a's. ½ for a member, 0 for a support, whose
-        axes stay with a.
-    """
-
-    a: pymunk.Body
-    b: pymunk.Body
-    at: tuple[float, float]
-    direction: float
-    law: Law
-    turn: float = 0.5
-
-
-class Structure(pymunk.Constraint):
-    """All joints of a connected structure; add it to a `pymunk.Space` like any other constraint.
+    Made by itself in the first step of a space (see `DuctileJoint.structure`), or from joints at hand to have the
+    arrays before.
 
     Parameters
     ----------
-    joints : sequence of Joint
-        At least one.
-    beta, delta : float
-        Time integration: (0, 1) is implicit Euler, robust and damped; (¼, 0) the average-acceleration rule, second
-        order and without damping; (¼, small) damps what a step does not resolve.
+    joints : sequence of DuctileJoint
+        At least one; those that already were in a structure keep their plastic state.
     tolerance : float
-        Newton's method ends when the residual impulses, as velocities, are below this share of the impulses' own.
+        Newton's method ends when the residual impulses, as velocities, are below this share of the bodies' own.
 
     Raises
     ------
     ValueError
-        When a joint has no dynamic body, or a number in it is not finite.
+        When there is no joint, or the joints do not have the same time integration.
     """
 
-    def __init__(self, joints: Sequence[Joint], beta: float = 0.0, delta: float = 1.0, tolerance: float = 1e-9) -> None:
+    def __init__(self, joints: Sequence[DuctileJoint], tolerance: float = _TOLERANCE) -> None:
         if not joints:
             raise ValueError("a structure needs at least one joint")
+        if len({joint.scheme for joint in joints}) > 1:
+            raise ValueError("the joints of a structure must have the same time integration scheme")
         self.joints = tuple(joints)
-        self._order_bodies()
-        self._lay_out(beta, delta, tolerance)
-        first = self.joints[0]
-        self._init(first.a, first.b, chipmunk.pivot(first.a, first.b))
-        chipmunk.adopt(self._constraint, kernels.FUNCTIONS, self._control, kernels.AFTER_STEP)
-
-    def _order_bodies(self) -> None:
         bodies = list(dict.fromkeys(body for joint in self.joints for body in (joint.a, joint.b)))
         moving = [body for body in bodies if body.body_type == pymunk.Body.DYNAMIC]
         held = [body for body in bodies if body.body_type != pymunk.Body.DYNAMIC]
         index = {body: i for i, body in enumerate(moving)}
-        for i, joint in enumerate(self.joints):
-            if joint.a not in index and joint.b not in index:
-                raise ValueError(f"joint {i} joins no dynamic body")
         pairs = [(index[j.a], index[j.b]) for j in self.joints if j.a in index and j.b in index]
         self._pattern = minimum_degree(len(moving), pairs)
         #: Bodies of the structure: dynamic ones in order of elimination, then the others.
         self.bodies = tuple([moving[i] for i in self._pattern.order] + held)
-        self._moving = len(moving)
+        self._lay_out(len(moving), tolerance)
+        self._take_over()
 
-    def _lay_out(self, beta: float, delta: float, tolerance: float) -> None:
+    def _lay_out(self, moving: int, tolerance: float) -> None:
         """All memory that the kernels work on, and the control table that points to it."""
-        n, moving = len(self.joints), self._moving
+        n, joints, pattern = len(self.joints), self.joints, self._pattern
         index = {body: i for i, body in enumerate(self.bodies)}
-        ends = np.array([[index[j.a], index[j.b]] for j in self.joints], dtype=np.int64)
-        slots = [self._pattern.slot(ends[i].max(), ends[i].min()) if ends[i].max() < moving else -1 for i in range(n)]
-        self._laws = [joint.law for joint in self.joints]
-        parameters = [np.ascontiguousarray(j.law.parameters(), dtype=float) for j in self.joints]
-        states = [np.ascontiguousarray(j.law.state(), dtype=float) for j in self.joints]
-        self._parameters = np.concatenate(parameters)
-        self._parameters_from = np.append(_starts(parameters), len(self._parameters))
-        self._state = np.concatenate(states)
-        laws = np.empty((n, 4), dtype=np.int64)
-        laws[:, 0] = [j.law.respond_address for j in self.joints]
-        laws[:, 1] = [j.law.commit_address for j in self.joints]
-        laws[:, 2] = self._parameters.ctypes.data + 8 * _starts(parameters)
-        laws[:, 3] = self._state.ctypes.data + 8 * _starts(states)
-        geometry = np.array([_geometry(joint) for joint in self.joints])
-        stiffness = np.array([joint.law.elastic_tangent() for joint in self.joints])
-        for what, values in (("geometry", geometry), ("stiffness", stiffness)):
-            wrong = np.flatnonzero(~np.isfinite(values).all(axis=1))
-            if wrong.size:
-                raise ValueError(f"joint {wrong[0]} has a {what} that is not finite")
-
-        below = len(self._pattern.column_rows)
-        self._settings = np.zeros(kernels.SETTINGS_WORDS)
-        self._settings[kernels.BETA] = beta
-        self._settings[kernels.DELTA] = delta
-        self._settings[kernels.TOLERANCE] = tolerance**2
-        self._result = np.zeros((n, kernels.RESULT_WORDS))
+        ends = np.array([[index[j.a], index[j.b]] for j in joints], dtype=np.int64)
+        slots = [pattern.slot(max(e), min(e)) if max(e) < moving else -1 for e in ends.tolist()]
+        parameters = [np.ascontiguousarray(j.law.parameters(), dtype=float) for j in joints]
+        states = [np.ascontiguousarray(j.law.state(), dtype=float) for j in joints]
+        self._parameters, self._parameter_ends = _joined(parameters)
+        self._states, self._state_ends = _joined(states)
+        laws = np.empty((n, 5), dtype=np.int64)
+        laws[:, 0] = [j.law.respond_address for j in joints]
+        laws[:, 1] = [j.law.commit_address for j in joints]
+        laws[:, 2] = self._parameters.ctypes.data + 8 * self._parameter_ends[:-1]
+        laws[:, 3] = self._states.ctypes.data + 8 * self._state_ends[:-1]
+        laws[:, 4] = np.diff(self._state_ends)
+        limits = [(j.limits.elongation, j.limits.slip, j.limits.rotation, j.limits.compression_counts) for j in joints]
+        below = len(pattern.column_rows)
+        self._settings = np.zeros(at.SETTINGS_WORDS)
+        self._settings[[at.BETA, at.DELTA]] = joints[0].scheme
+        self._settings[at.TOLERANCE] = tolerance**2
+        self._result = np.zeros((n, at.RESULT_WORDS))
+        self._active = np.ones(n, dtype=np.int64)
         self._arrays: dict[int, np.ndarray] = {
-            kernels.BODY_AT: np.array([chipmunk.body_address(body) for body in self.bodies], dtype=np.int64),
-            kernels.JOINT_BODIES: ends,
-            kernels.GEOMETRY: geometry,
-            kernels.LAWS: laws,
-            kernels.STIFFNESS: stiffness,
-            kernels.COLUMN_START: self._pattern.column_start,
-            kernels.COLUMN_ROWS: self._pattern.column_rows,
-            kernels.FILL_TARGETS: np.append(self._pattern.fill_targets, 0),
-            kernels.JOINT_SLOT: np.array(slots, dtype=np.int64),
-            kernels.SETTINGS: self._settings,
-            kernels.JACOBIAN: np.zeros((n, 18)),
-            kernels.DEFORMATION: np.zeros((n, 3)),
-            kernels.IMPULSE: np.zeros((n, 3)),
-            kernels.RESIDUAL: np.zeros((n, 3)),
-            kernels.SLOPE: np.zeros((n, 3)),
-            kernels.RESPONSE: np.zeros((n, kernels.RESPONSE_WORDS)),
-            kernels.VELOCITY: np.zeros((len(self.bodies), 3)),
-            kernels.SOLUTION: np.zeros((moving, 3)),
-            kernels.DIAGONAL: np.zeros((moving, 9)),
-            kernels.LOWER_BLOCKS: np.zeros((below, 9)),
-            kernels.SCALED_BLOCKS: np.zeros((below, 9)),
-            kernels.RESULT: self._result,
+            at.BODY_AT: np.array([chipmunk.body_address(body) for body in self.bodies], dtype=np.int64),
+            at.JOINT_AT: np.array([chipmunk.address(j._constraint) for j in joints], dtype=np.int64),
+            at.JOINT_BODIES: ends,
+            at.GEOMETRY: np.array([j.geometry for j in joints]),
+            at.LAWS: laws,
+            at.STIFFNESS: np.array([j.law.elastic_tangent() for j in joints]),
+            at.DAMPING: np.array([j.damping for j in joints], dtype=float),
+            at.LIMITS: np.array(limits, dtype=float),
+            at.SCALE: np.ones(n),
+            at.SCRATCH: np.zeros(laws[:, 4].max()),
+            at.ACTIVE: self._active,
+            at.COLUMN_START: pattern.column_start,
+            at.COLUMN_ROWS: pattern.column_rows,
+            at.FILL_TARGETS: np.append(pattern.fill_targets, 0),
+            at.JOINT_SLOT: np.array(slots, dtype=np.int64),
+            at.SETTINGS: self._settings,
+            at.JACOBIAN: np.zeros((n, 18)),
+            at.DEFORMATION: np.zeros((n, 3)),
+            at.LIGHTNESS: np.zeros((n, 3)),
+            at.IMPULSE: np.zeros((n, 3)),
+            at.RESIDUAL: np.zeros((n, 3)),
+            at.SLOPE: np.zeros((n, 3)),
+            at.RESPONSE: np.zeros((n, at.RESPONSE_WORDS)),
+            at.VELOCITY: np.zeros((len(self.bodies), 3)),
+            at.START_VELOCITY: np.zeros((len(self.bodies), 3)),
+            at.LAST_VELOCITY: np.zeros((len(self.bodies), 3)),
+            at.SOLUTION: np.zeros((moving, 3)),
+            at.DIAGONAL: np.zeros((moving, 9)),
+            at.LOWER_BLOCKS: np.zeros((below, 9)),
+            at.SCALED_BLOCKS: np.zeros((below, 9)),
+            at.RESULT: self._result,
         }
-        self._control = np.zeros(kernels.CONTROL_WORDS, dtype=np.int64)
-        self._control[[kernels.BODIES, kernels.MOVING, kernels.JOINTS, kernels.LOWER]] = (
-            len(self.bodies),
-            moving,
-            n,
-            below,
-        )
+        self._control = np.zeros(at.CONTROL_WORDS, dtype=np.int64)
+        self._control[[at.BODIES, at.MOVING, at.JOINTS, at.LOWER]] = len(self.bodies), moving, n, below
+        self._control[at.FAULT] = -1
+        self._control[at.NOTICE] = int(ctypes.cast(_notice, ctypes.c_void_p).value or 0)
+        self._control[at.KEY] = next(_keys)
+        _structures[int(self._control[at.KEY])] = self
         for word, array in self._arrays.items():
             self._control[word] = array.ctypes.data
 
-    def anchors(self, joint: int) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Where a joint holds its bodies a and b, each in that body's own coordinates [m]."""
-        ax, ay, bx, by = self._arrays[kernels.GEOMETRY][joint, :4].tolist()
-        return (ax, ay), (bx, by)
+    def _take_over(self) -> None:
+        """Make the joints this structure's, with the plastic state they had in another.
+
+        Bodies that were in another structure, or are joined to one or to a kinematic body, keep moving as they do; a
+        structure that is new and tied to the world at most begins to move with its first step.
+        """
+        moved = {
+            body: old._arrays[at.LAST_VELOCITY][i]
+            for old in {joint.structure for joint in self.joints if joint.structure is not None}
+            for i, body in enumerate(old.bodies)
+        }
+        if moved or any(body.body_type == pymunk.Body.KINEMATIC for body in self.bodies):
+            for i, body in enumerate(self.bodies):
+                present = (*body.velocity, body.angular_velocity)
+                self._arrays[at.LAST_VELOCITY][i] = moved.get(body, present)
+        for i, joint in enumerate(self.joints):
+            old = joint.structure
+            if old is not None:
+                k = joint.index
+                self._result[i] = old._result[k]
+                self._active[i] = old._active[k]
+                first, last = old._state_ends[k : k + 2]
+                self._states[self._state_ends[i] : self._state_ends[i + 1]] = old._states[first:last]
+            joint.join(self, i)
+            chipmunk.assign(joint._constraint, self._control, i)
 
     def change_law(self, joint: int, law: Law) -> None:
         """Give a joint new numbers for the law it has; its plastic state stays.
@@ -165,72 +159,150 @@ class Structure(pymunk.Constraint):
             When ``law`` is of another kind or size.
         """
         values = law.parameters()
-        first, last = self._parameters_from[joint], self._parameters_from[joint + 1]
-        if type(law) is not type(self._laws[joint]) or len(values) != last - first:
+        first, last = self._parameter_ends[joint : joint + 2] if joint >= 0 else self._parameter_ends[joint - 1 :][:2]
+        if type(law) is not type(self.joints[joint].law) or len(values) != last - first:
             raise ValueError(f"joint {joint} has a law of another kind or size")
         self._parameters[first:last] = values
-        self._arrays[kernels.STIFFNESS][joint] = law.elastic_tangent()
-        self._laws[joint] = law
+        self._arrays[at.STIFFNESS][joint] = law.elastic_tangent()
+        self.joints[joint].law = law
 
     @property
     def deformation(self) -> np.ndarray:
-        """Deformation (u, v, θ) of each joint at the end of the last step, (n, 3) [m, m, rad]."""
+        """Extension, slip and rotation of each joint at the end of the last step, (n, 3) [m, m, rad]."""
         return self._result[:, 0:3].copy()
 
     @property
     def force(self) -> np.ndarray:
-        """Force (N, Q, M) that each joint bore in the last step, (n, 3) [N, N, N m]; signs as in `scene`."""
-        return self._result[:, 3:6].copy()
+        """N, Q and M that each joint bore in the last step, (n, 3) [N, N, N m]; signs as in `scene`."""
+        return self._result[:, at.RESULT_FORCE : at.RESULT_FORCE + 3].copy()
+
+    @property
+    def plastic_deformation(self) -> np.ndarray:
+        """Plastic elongation, shortening, slip and rotation, each summed without sign, (n, 4) [m, m, m, rad]."""
+        return self._result[:, at.RESULT_PLASTIC : at.RESULT_PLASTIC + 4].copy()
 
     @property
     def elastic_energy(self) -> np.ndarray:
         """Elastic energy in each joint, (n,) [J]."""
-        return self._result[:, 6].copy()
+        return self._result[:, at.RESULT_ELASTIC].copy()
 
     @property
     def dissipated(self) -> np.ndarray:
-        """Plastic work that each joint has dissipated, (n,) [J]."""
-        return self._result[:, 7].copy()
+        """Plastic work done in each joint so far, (n,) [J]; with what was stored in it when it broke."""
+        return self._result[:, at.RESULT_DISSIPATED].copy()
+
+    @property
+    def viscous_work(self) -> np.ndarray:
+        """Work done against viscous damping in each joint so far, (n,) [J]."""
+        return self._result[:, at.RESULT_VISCOUS].copy()
+
+    @property
+    def capacity_used(self) -> np.ndarray:
+        """Share of each joint's plastic capacity used, (n,), 1 when broken."""
+        return self._result[:, at.RESULT_USED].copy()
+
+    @property
+    def active(self) -> np.ndarray:
+        """Whether each joint still holds, (n,) bool; not when it is broken or was taken out of the space."""
+        return self._active.astype(bool)
 
     @property
     def residual(self) -> float:
-        """Residual impulses of the last solve, as a share of the impulses [-]."""
-        return float(self._settings[kernels.LAST_RESIDUAL])
+        """Residual impulses of the last solve, as velocities, as a share of the bodies' own [-]."""
+        return float(self._settings[at.LAST_RESIDUAL])
 
     @property
     def newton_steps(self) -> int:
         """Newton steps taken so far."""
-        return int(self._control[kernels.NEWTON_STEPS])
+        return int(self._control[at.NEWTON_STEPS])
 
     @property
     def unconverged(self) -> int:
         """How many solves so far ended above the tolerance."""
-        return int(self._control[kernels.UNCONVERGED])
+        return int(self._control[at.UNCONVERGED])
 
-    def check(self) -> None:
-        """Raise when the last step could not be taken.
-
-        Raises
-        ------
-        SolverError
-            When a velocity was not finite; the structure then took no part in that step.
-        """
-        if self._control[kernels.STATUS] == kernels.NOT_FINITE:
-            raise SolverError(
-                "the structure's velocities are no longer finite; look for a body that was moved or pushed without "
-                "bound, or lower the stiffness or the step"
+    def _told(self) -> None:
+        """Something happened in a step that the space has not left yet."""
+        fault = int(self._control[at.FAULT])
+        if fault >= 0:
+            self._control[at.FAULT] = -1
+            joint = self.joints[fault]
+            x, y = joint.at
+            error = SolverError(
+                f"the step was refused: the impulse of joint {fault} (made at {x:g}, {y:g}) is not finite; look for a "
+                "body that was moved or pushed without bound, or take a shorter step or a lower stiffness"
             )
+            _raise_after_step(_space_of(joint), error)
+            return
+        for joint in self.joints:
+            if joint.broken and joint.structure is self:
+                space = _space_of(joint)
+                if joint in space.constraints:
+                    space.remove(joint)
+                    if joint.on_break is not None:
+                        joint.on_break(joint)
+            elif joint.structure is self:
+                joint.ask_for_structure()
 
 
-def _starts(pieces: list[np.ndarray]) -> np.ndarray:
-    return np.concatenate([[0], np.cumsum([len(piece) for piece in pieces])[:-1]]).astype(np.int64)
+def group(constraint: pymunk.Constraint, space: pymunk.Space) -> None:  # noqa: ARG001
+    """Group all ductile joints of ``space`` into structures; those whose company has not changed stay as they are."""
+    joints = [c for c in space.constraints if isinstance(c, DuctileJoint) and not c.broken]
+    parent: dict[pymunk.Body, pymunk.Body] = {}
+
+    def root(body: pymunk.Body) -> pymunk.Body:
+        while parent.setdefault(body, body) is not body:
+            parent[body] = parent[parent[body]]
+            body = parent[body]
+        return body
+
+    for joint in joints:
+        ends = [body for body in (joint.a, joint.b) if body.body_type == pymunk.Body.DYNAMIC]
+        if len(ends) == 2:
+            parent[root(ends[0])] = root(ends[1])
+    groups: dict[pymunk.Body, list[DuctileJoint]] = {}
+    for joint in joints:
+        body = joint.a if joint.a.body_type == pymunk.Body.DYNAMIC else joint.b
+        groups.setdefault(root(body), []).append(joint)
+    for members in groups.values():
+        old = members[0].structure
+        if old is not None and set(old.joints) == set(members):
+            for joint in members:
+                joint.pre_solve = None
+        else:
+            Structure(members)
 
 
-def _geometry(joint: Joint) -> list[float]:
-    """Anchors in body coordinates, the frame's rest angle on a and on b, and the share of b's rotation."""
-    anchors: list[float] = []
-    for body in (joint.a, joint.b):
-        dx, dy = joint.at[0] - body.position.x, joint.at[1] - body.position.y
-        c, s = math.cos(body.angle), math.sin(body.angle)
-        anchors += [c * dx + s * dy, -s * dx + c * dy]
-    return [*anchors, joint.direction - joint.a.angle, joint.direction - joint.b.angle, joint.turn]
+_structures: WeakValueDictionary[int, Structure] = WeakValueDictionary()
+_keys = itertools.count(1)
+
+
+def _tell(key: int) -> None:
+    _structures[key]._told()
+
+
+#: `_tell` as a C function, for the kernels to call.
+_notice = ctypes.CFUNCTYPE(None, ctypes.c_int64)(_tell)
+
+
+def _space_of(joint: DuctileJoint) -> pymunk.Space:
+    body = joint.a if joint.a.body_type == pymunk.Body.DYNAMIC else joint.b
+    assert body.space is not None
+    return body.space
+
+
+def _raise_after_step(space: pymunk.Space, error: Exception) -> None:
+    pending = [error]
+
+    def fail(space: pymunk.Space, key: object) -> None:  # noqa: ARG001
+        # pymunk does not forget a callback that raises.
+        if pending:
+            raise pending.pop()
+
+    space.add_post_step_callback(fail, object())
+
+
+def _joined(pieces: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """All pieces in one array, and where each begins and the last one ends."""
+    ends = np.concatenate([[0], np.cumsum([len(piece) for piece in pieces])]).astype(np.int64)
+    return np.concatenate(pieces), ends

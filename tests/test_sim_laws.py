@@ -41,7 +41,7 @@ class Point:
         return out[:3], np.array([[a[0], a[1], a[2]], [a[1], a[3], a[4]], [a[2], a[4], a[5]]])
 
     def commit(self, q: np.ndarray) -> tuple[float, float]:
-        out, q = np.empty(2), np.ascontiguousarray(q, float)
+        out, q = np.empty(5), np.ascontiguousarray(q, float)
         self.module.commit.ctypes(*(x.ctypes.data for x in (self.parameters, self.state, q, out)))
         return float(out[0]), float(out[1])
 

@@ -28,6 +28,8 @@ class Twin:
     def __post_init__(self) -> None:
         self.slip = np.zeros_like(self.stiffness)
         self.force = np.zeros_like(self.stiffness)
+        # A velocity given before the first step acts when the forces do.
+        self.last = np.zeros_like(self.velocity)
 
     def kinematics(self) -> tuple[np.ndarray, np.ndarray]:
         """Deformations (n, 3) and their gradient (3n, 3b)."""
@@ -53,11 +55,11 @@ class Twin:
 
     def step(self, h: float, push: np.ndarray) -> None:
         """One step of Chipmunk's order: move, find q and J, add the forces' ``push`` (b, 3), solve."""
-        self.position = self.position + h * self.velocity
+        self.position = self.position + h * self.last
         q, jacobian = self.kinematics()
-        old, reach = self.velocity.ravel(), h * (self.beta + self.delta)
+        old, reach = self.last.ravel(), h * (self.beta + self.delta)
         k, cap, inverse = self.stiffness.ravel(), self.cap.ravel(), 1.0 / self.mass.ravel()
-        free = old + h * inverse * push.ravel()
+        free = self.velocity.ravel() + h * inverse * push.ravel()
         v, impulse = free.copy(), np.zeros(k.size)
         for iteration in range(60):
             trial = k * (q.ravel() - self.beta * h * jacobian @ old + reach * jacobian @ v - self.slip.ravel())
@@ -71,7 +73,7 @@ class Twin:
             change = np.linalg.solve(np.eye(k.size) + h * reach * tangent[:, None] * compliance, residual)
             impulse += change
             v = free + inverse * (jacobian.T @ impulse)
-        self.velocity = v.reshape(-1, 3)
+        self.velocity = self.last = v.reshape(-1, 3)
         trial = k * (q.ravel() - self.beta * h * jacobian @ old + reach * jacobian @ v - self.slip.ravel())
         self.force = np.clip(trial, -cap, cap).reshape(-1, 3)
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -17,8 +17,8 @@ class Law(Protocol):
 
     ``respond_address`` is called with the addresses of parameters, state, q = (u, v, θ) and out; it writes the force
     s = (N, Q, M) and the upper triangle of ∂s/∂q, row by row, to out and changes nothing else. ``commit_address`` is
-    called the same way once a step's q is final; it updates the state and writes to out the elastic energy [J] and
-    the work dissipated in this step [J].
+    called the same way once a step's q is final; it updates the state and writes to out the elastic energy [J], the
+    work dissipated in this step [J], and the plastic deformation added in it (u, v, θ) [m, m, rad].
     """
 
     name: str

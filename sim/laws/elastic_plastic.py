@@ -2,7 +2,7 @@
 
     s_i = k_i (q_i - p_i),  |s_i| ≤ cap_i,  ṗ_i only at the cap.
 
-Parameters in memory: k (3), cap (3). State: p (3), plastic deformation summed without sign (3).
+Parameters in memory: k (3), cap (3). State: p (3).
 """
 
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from numba import cfunc
 from sim.memory import LAW_SIGNATURE, floats
 
 
-@cfunc(LAW_SIGNATURE, cache=True)
+@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
 def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
-    k, p, q, r = floats(parameters, 6), floats(state, 6), floats(deformation, 3), floats(out, 9)
+    k, p, q, r = floats(parameters, 6), floats(state, 3), floats(deformation, 3), floats(out, 9)
     for i in range(3):
         force, cap = k[i] * (q[i] - p[i]), k[3 + i]
         r[i] = min(max(force, -cap), cap)
@@ -26,17 +26,18 @@ def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def
     r[8] = k[2] if abs(r[2]) < k[5] else 0.0
 
 
-@cfunc(LAW_SIGNATURE, cache=True)
+@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
 def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
-    k, p, q, r = floats(parameters, 6), floats(state, 6), floats(deformation, 3), floats(out, 2)
+    k, p, q, r = floats(parameters, 6), floats(state, 3), floats(deformation, 3), floats(out, 5)
     energy, work = 0.0, 0.0
     for i in range(3):
         force = k[i] * (q[i] - p[i])
         held = min(max(force, -k[3 + i]), k[3 + i])
+        r[2 + i] = 0.0
         if held != force:
             slip = (force - held) / k[i]
             p[i] += slip
-            p[3 + i] += abs(slip)
+            r[2 + i] = slip
             work += held * slip
         if k[i] > 0.0:
             energy += 0.5 * held * held / k[i]
@@ -68,7 +69,7 @@ class ElasticPlastic:
 
     def state(self) -> np.ndarray:
         """State of a new joint as it lies in memory."""
-        return np.zeros(6)
+        return np.zeros(3)
 
     def elastic_tangent(self) -> tuple[float, float, float, float, float, float]:
         """Upper triangle of ∂s/∂q while elastic, row by row."""

@@ -4,8 +4,7 @@ A fibre at height y has strain ε = (u - y θ) / ℓ and follows bilinear kinema
 H = E E_t / (E - E_t), so N–M interaction, gradual yielding and the Bauschinger effect come by themselves.
 
 Parameters in memory: ℓ, k_Q, Q_max, number of fibres f; then y, A, E, fy, H of each fibre, one list after another.
-State: plastic slip, slip summed without sign, then the plastic strain of each fibre, then the plastic deformations u, θ
-summed without sign.
+State: plastic slip, then the plastic strain of each fibre.
 """
 
 from dataclasses import dataclass
@@ -16,17 +15,17 @@ from numba import cfunc
 from sim.memory import LAW_SIGNATURE, floats
 
 
-@cfunc(LAW_SIGNATURE, cache=True)
+@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
 def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
     head, q, r = floats(parameters, 4), floats(deformation, 3), floats(out, 9)
     length, n = head[0], int(head[3])
-    fibre, p = floats(parameters + 32, 5 * n), floats(state, 2 + n)
+    fibre, p = floats(parameters + 32, 5 * n), floats(state, 1 + n)
     mean, curvature = q[0] / length, q[2] / length
     axial, moment, ea, es, ei = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(n):
         y, area, e, fy, h = fibre[i], fibre[n + i], fibre[2 * n + i], fibre[3 * n + i], fibre[4 * n + i]
-        stress = e * (mean - y * curvature - p[2 + i])
-        relative = stress - h * p[2 + i]
+        stress = e * (mean - y * curvature - p[1 + i])
+        relative = stress - h * p[1 + i]
         tangent = e
         if relative > fy:
             stress -= e * (relative - fy) / (e + h)
@@ -46,18 +45,18 @@ def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def
     r[7], r[8] = 0.0, ei / length
 
 
-@cfunc(LAW_SIGNATURE, cache=True)
+@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
 def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
-    head, q, r = floats(parameters, 4), floats(deformation, 3), floats(out, 2)
+    head, q, r = floats(parameters, 4), floats(deformation, 3), floats(out, 5)
     length, n = head[0], int(head[3])
-    fibre, p = floats(parameters + 32, 5 * n), floats(state, 4 + n)
+    fibre, p = floats(parameters + 32, 5 * n), floats(state, 1 + n)
     mean, curvature = q[0] / length, q[2] / length
     energy, work = 0.0, 0.0
     stretch, rotation, ea, ei = 0.0, 0.0, 0.0, 0.0
     for i in range(n):
         y, area, e, fy, h = fibre[i], fibre[n + i], fibre[2 * n + i], fibre[3 * n + i], fibre[4 * n + i]
-        stress = e * (mean - y * curvature - p[2 + i])
-        relative = stress - h * p[2 + i]
+        stress = e * (mean - y * curvature - p[1 + i])
+        relative = stress - h * p[1 + i]
         flow = 0.0
         if relative > fy:
             flow = (relative - fy) / (e + h)
@@ -66,20 +65,19 @@ def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
         stress -= e * flow
         # What a fibre's flow dissipates; the rest of σ dεp is kept as energy of the back stress H εp.
         work += area * length * fy * abs(flow)
-        p[2 + i] += flow
-        energy += 0.5 * area * length * (stress * stress / e + h * p[2 + i] * p[2 + i])
+        p[1 + i] += flow
+        energy += 0.5 * area * length * (stress * stress / e + h * p[1 + i] * p[1 + i])
         stretch += area * e * flow
         rotation -= area * e * y * flow
         ea += area * e
         ei += area * e * y * y
-    p[2 + n] += abs(stretch / ea) * length
-    p[3 + n] += abs(rotation / ei) * length
+    r[2], r[3], r[4] = length * stretch / ea, 0.0, length * rotation / ei
     shear = head[1] * (q[1] - p[0])
     held = min(max(shear, -head[2]), head[2])
     if held != shear:
         slip = (shear - held) / head[1]
         p[0] += slip
-        p[1] += abs(slip)
+        r[3] = slip
         work += held * slip
     if head[1] > 0.0:
         energy += 0.5 * held * held / head[1]
@@ -125,7 +123,7 @@ class FibreSection:
 
     def state(self) -> np.ndarray:
         """State of a new joint as it lies in memory."""
-        return np.zeros(4 + len(self.y))
+        return np.zeros(1 + len(self.y))
 
     def elastic_tangent(self) -> tuple[float, float, float, float, float, float]:
         """Upper triangle of ∂s/∂q while elastic, row by row."""

@@ -1,0 +1,183 @@
+"""A ductile joint: a pymunk constraint that yields, stays bent, and breaks when its plastic reserve is used up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import pymunk
+
+from sim import chipmunk
+from sim.kernels import AFTER_STEP, FUNCTIONS
+from sim.laws import Law
+
+if TYPE_CHECKING:
+    from sim.structure import Structure
+
+#: β and δ of the time integration (see `sim.kernels.newton`): robust and damped, or second order and undamped.
+IMPLICIT_EULER = (0.0, 1.0)
+AVERAGE_ACCELERATION = (0.25, 0.0)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Plastic deformation, summed without sign, at which a joint breaks.
+
+    Attributes
+    ----------
+    elongation, slip : float
+        [m].
+    rotation : float
+        [rad].
+    compression_counts : bool
+        Whether plastic shortening is summed with the elongation.
+    """
+
+    elongation: float = math.inf
+    slip: float = math.inf
+    rotation: float = math.inf
+    compression_counts: bool = False
+
+
+class DuctileJoint(pymunk.Constraint):
+    """A joint between two bodies, free of force as they lie when it is made.
+
+    Add it to a `pymunk.Space` like any other constraint. Joints that share dynamic bodies form one structure by
+    themselves and are solved together; see `structure`.
+
+    Parameters
+    ----------
+    a, b : pymunk.Body
+        At least one of them dynamic.
+    at : (float, float)
+        World position of the joint [m].
+    law : Law
+        Force from deformation, e.g. `ElasticPlastic`.
+    direction : float, optional
+        Angle of the joint's x axis, along which N acts [rad]; by default from a to b.
+    turn : float, optional
+        Share of b's rotation that the axes follow, the rest being a's; ½ between dynamic bodies, and otherwise none,
+        so that they stay with the body that holds.
+    damping : (float, float, float)
+        Viscous force over rate of deformation: N s/m, N s/m, N m s/rad.
+    limits : Limits
+    scheme : (float, float)
+        β and δ of the time integration, the same for all joints of a structure.
+    on_break : callable, optional
+        Called with the joint in the step in which it breaks.
+
+    Raises
+    ------
+    ValueError
+        When neither body is dynamic, or a number is not finite.
+    """
+
+    def __init__(
+        self,
+        a: pymunk.Body,
+        b: pymunk.Body,
+        at: tuple[float, float],
+        law: Law,
+        *,
+        direction: float | None = None,
+        turn: float | None = None,
+        damping: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        limits: Limits = Limits(),
+        scheme: tuple[float, float] = IMPLICIT_EULER,
+        on_break: Callable[[DuctileJoint], None] | None = None,
+    ) -> None:
+        moving = [body.body_type == pymunk.Body.DYNAMIC for body in (a, b)]
+        if not any(moving):
+            raise ValueError("a joint needs a dynamic body")
+        if direction is None:
+            direction = (b.position - a.position).angle
+        if turn is None:
+            turn = 0.5 if all(moving) else float(moving.index(False))
+        self.at = (float(at[0]), float(at[1]))
+        self.law = law
+        self.direction = direction
+        self.turn = turn
+        self.damping = damping
+        self.limits = limits
+        self.scheme = scheme
+        self.on_break = on_break
+        self.geometry = [*_anchor(a, self.at), *_anchor(b, self.at), direction - a.angle, direction - b.angle, turn]
+        for what, values in (
+            ("position or direction", self.geometry),
+            ("stiffness", law.elastic_tangent()),
+            ("damping", damping),
+        ):
+            if not all(map(math.isfinite, values)):
+                raise ValueError(f"the joint has a {what} that is not finite")
+        self._structure: Structure | None = None
+        self._index = 0
+        self._init(a, b, chipmunk.pivot(a, b))
+        chipmunk.adopt(self._constraint, FUNCTIONS, AFTER_STEP)
+        self.ask_for_structure()
+
+    def ask_for_structure(self) -> None:
+        """Have the joints of its space grouped into structures anew at the start of the next step."""
+        from sim.structure import group
+
+        self.pre_solve = group
+
+    def join(self, structure: Structure, index: int) -> None:
+        """Become joint ``index`` of ``structure``; called by the structure itself."""
+        self._structure, self._index = structure, index
+        self.pre_solve = None
+
+    @property
+    def structure(self) -> Structure | None:
+        """The structure that the joint is solved with; None before the first step."""
+        return self._structure
+
+    @property
+    def index(self) -> int:
+        """The joint's row in the arrays of its structure."""
+        return self._index
+
+    @property
+    def force(self) -> tuple[float, float, float]:
+        """N [N], Q [N] and M [N m] that the joint bore in the last step, 0 once broken; signs as in `scene`."""
+        return (0.0, 0.0, 0.0) if self.broken else self._row("force")
+
+    @property
+    def deformation(self) -> tuple[float, float, float]:
+        """Extension [m], slip [m] and rotation [rad] at the end of the last step."""
+        return self._row("deformation")
+
+    @property
+    def plastic_deformation(self) -> tuple[float, float, float, float]:
+        """Plastic elongation, shortening, slip [m] and rotation [rad], each summed without sign."""
+        return (
+            (0.0,) * 4 if self._structure is None else tuple(self._structure.plastic_deformation[self._index].tolist())
+        )
+
+    @property
+    def capacity_used(self) -> float:
+        """Share of the plastic capacity used, the largest over elongation, slip and rotation; 1 when broken."""
+        return 0.0 if self._structure is None else float(self._structure.capacity_used[self._index])
+
+    @property
+    def dissipated(self) -> float:
+        """Plastic work done in the joint so far [J]."""
+        return 0.0 if self._structure is None else float(self._structure.dissipated[self._index])
+
+    @property
+    def broken(self) -> bool:
+        """Whether the joint has broken."""
+        return self._structure is not None and self.capacity_used >= 1.0 and not self._structure.active[self._index]
+
+    def _row(self, name: str) -> tuple[float, float, float]:
+        if self._structure is None:
+            return 0.0, 0.0, 0.0
+        x, y, z = getattr(self._structure, name)[self._index].tolist()
+        return x, y, z
+
+
+def _anchor(body: pymunk.Body, at: tuple[float, float]) -> list[float]:
+    """From the body's centre of gravity to ``at``, in body coordinates [m]."""
+    x, y = body.world_to_local(at) - body.center_of_gravity
+    return [x, y]

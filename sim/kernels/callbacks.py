@@ -1,0 +1,274 @@
+"""The functions that Chipmunk calls for each joint; the first joint of a structure that it comes to acts for all.
+
+Numba keys its cache by a function's own code. What these functions call lies in other files, so a digest of those
+files is made part of them.
+"""
+
+import hashlib
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import cfunc, njit, types
+
+from sim.chipmunk import (
+    ANGLE,
+    BODY_WORDS,
+    CENTRE,
+    CONTROL,
+    COSINE,
+    COSINE_AGAIN,
+    MINUS_SINE,
+    ORIGIN,
+    SINE,
+    SPIN,
+    VX,
+    X,
+)
+from sim.kernels import layout as at
+from sim.kernels.commit import commit, weaken
+from sim.kernels.kinematics import prepare
+from sim.kernels.newton import iterate
+from sim.memory import call_notice, floats, integers, table
+
+_MOST_BREAKING_ROUNDS = 30
+
+
+@njit(error_model="numpy")
+def begin(c, h):  # type: ignore[no-untyped-def]
+    """Start of a step: where the joints are, and what their bodies' velocities were.
+
+    Chipmunk has just moved the bodies. Where one was given another velocity since the last step, by an impulse say, it
+    was moved with that before any joint could resist; it is put to where its old velocity would have taken it, so that
+    the impulse acts when the forces do.
+    """
+    t = integers(c, at.CONTROL_WORDS)
+    n, bodies = t[at.JOINTS], t[at.BODIES]
+    settings = floats(t[at.SETTINGS], at.SETTINGS_WORDS)
+    settings[at.STEP] = h
+    t[at.FRESH] = 1
+    table(t[at.IMPULSE], n, 3)[:, :] = 0.0
+    floats(t[at.SCALE], n)[:] = 1.0
+    body_at = integers(t[at.BODY_AT], bodies)
+    start, last = table(t[at.START_VELOCITY], bodies, 3), table(t[at.LAST_VELOCITY], bodies, 3)
+    load_velocities(t, start)
+    for i in range(t[at.MOVING]):
+        x, y, w = start[i, 0] - last[i, 0], start[i, 1] - last[i, 1], start[i, 2] - last[i, 2]
+        if x != 0.0 or y != 0.0 or w != 0.0:
+            move(body_at[i], -h * x, -h * y, -h * w)
+    prepare(
+        n,
+        integers(t[at.JOINT_BODIES], 2 * n).reshape(n, 2),
+        body_at,
+        integers(t[at.JOINT_AT], n),
+        integers(t[at.ACTIVE], n),
+        table(t[at.GEOMETRY], n, at.GEOMETRY_WORDS),
+        settings,
+        table(t[at.JACOBIAN], n, 18),
+        table(t[at.DEFORMATION], n, 3),
+        table(t[at.LIGHTNESS], n, 3),
+        last,
+    )
+
+
+@njit(error_model="numpy")
+def move(body, x, y, turn):  # type: ignore[no-untyped-def]
+    """Move a body and turn it."""
+    b = floats(body, BODY_WORDS)
+    b[X] += x
+    b[X + 1] += y
+    b[ANGLE] += turn
+    c, s = math.cos(b[ANGLE]), math.sin(b[ANGLE])
+    b[COSINE], b[SINE], b[MINUS_SINE], b[COSINE_AGAIN] = c, s, -s, c
+    b[ORIGIN] = b[X] - (c * b[CENTRE] - s * b[CENTRE + 1])
+    b[ORIGIN + 1] = b[X + 1] - (s * b[CENTRE] + c * b[CENTRE + 1])
+
+
+@njit(error_model="numpy")
+def load_velocities(t, velocity):  # type: ignore[no-untyped-def]
+    """Copy the bodies' velocities into ``velocity``."""
+    body_at = integers(t[at.BODY_AT], t[at.BODIES])
+    for i in range(t[at.BODIES]):
+        b = floats(body_at[i], BODY_WORDS)
+        velocity[i, 0], velocity[i, 1], velocity[i, 2] = b[VX], b[VX + 1], b[SPIN]
+
+
+@njit(error_model="numpy")
+def solve(c):  # type: ignore[no-untyped-def]
+    """The joints' impulses at the bodies' present velocities, breaking within the step included."""
+    t = integers(c, at.CONTROL_WORDS)
+    bodies, moving, n, m = t[at.BODIES], t[at.MOVING], t[at.JOINTS], t[at.LOWER]
+    if t[at.FAULT] >= 0:
+        return
+    joint_bodies = integers(t[at.JOINT_BODIES], 2 * n).reshape(n, 2)
+    body_at = integers(t[at.BODY_AT], bodies)
+    laws = integers(t[at.LAWS], 5 * n).reshape(n, 5)
+    settings, scale = floats(t[at.SETTINGS], at.SETTINGS_WORDS), floats(t[at.SCALE], n)
+    jacobian, deformation = table(t[at.JACOBIAN], n, 18), table(t[at.DEFORMATION], n, 3)
+    impulse, velocity = table(t[at.IMPULSE], n, 3), table(t[at.VELOCITY], bodies, 3)
+    load_velocities(t, velocity)
+    predicting = t[at.FRESH] == 1
+    t[at.FRESH] = 0
+    t[at.SOLVES] += 1
+    converged, residual = False, 0.0
+    for _ in range(_MOST_BREAKING_ROUNDS):
+        steps, converged, residual = iterate(
+            n,
+            moving,
+            joint_bodies,
+            body_at,
+            laws,
+            table(t[at.STIFFNESS], n, 6),
+            table(t[at.DAMPING], n, 3),
+            scale,
+            settings,
+            integers(t[at.JOINT_SLOT], n),
+            integers(t[at.COLUMN_START], moving + 1),
+            integers(t[at.COLUMN_ROWS], m),
+            integers(t[at.FILL_TARGETS], 1),
+            jacobian,
+            deformation,
+            table(t[at.LIGHTNESS], n, 3),
+            impulse,
+            velocity,
+            table(t[at.RESPONSE], n, at.RESPONSE_WORDS),
+            table(t[at.RESIDUAL], n, 3),
+            table(t[at.SLOPE], n, 3),
+            table(t[at.SOLUTION], moving, 3),
+            table(t[at.DIAGONAL], moving, 9),
+            table(t[at.LOWER_BLOCKS], m, 9),
+            table(t[at.SCALED_BLOCKS], m, 9),
+            settings[at.TOLERANCE],
+            predicting,
+        )
+        t[at.NEWTON_STEPS] += steps
+        predicting = False
+        change = weaken(
+            n,
+            joint_bodies,
+            laws,
+            table(t[at.LIMITS], n, at.LIMITS_WORDS),
+            integers(t[at.ACTIVE], n),
+            settings,
+            jacobian,
+            deformation,
+            velocity,
+            table(t[at.RESULT], n, at.RESULT_WORDS),
+            floats(t[at.SCRATCH], 1),
+            scale,
+        )
+        if change <= 1e-4:
+            break
+    settings[at.LAST_RESIDUAL] = residual
+    for k in range(n):
+        if not math.isfinite(impulse[k, 0] + impulse[k, 1] + impulse[k, 2]):
+            refuse(t, k)
+            return
+    for i in range(moving):
+        if not math.isfinite(velocity[i, 0] + velocity[i, 1] + velocity[i, 2]):
+            refuse(t, 0)
+            return
+    if not converged:
+        t[at.UNCONVERGED] += 1
+    for i in range(moving):
+        b = floats(body_at[i], BODY_WORDS)
+        b[VX], b[VX + 1], b[SPIN] = velocity[i, 0], velocity[i, 1], velocity[i, 2]
+
+
+@njit(error_model="numpy")
+def refuse(t, joint):  # type: ignore[no-untyped-def]
+    """Put the structure's bodies back to where and how they were before the step."""
+    t[at.FAULT] = joint
+    h = floats(t[at.SETTINGS], at.SETTINGS_WORDS)[at.STEP]
+    body_at, before = integers(t[at.BODY_AT], t[at.BODIES]), table(t[at.START_VELOCITY], t[at.BODIES], 3)
+    last = table(t[at.LAST_VELOCITY], t[at.BODIES], 3)
+    for i in range(t[at.MOVING]):
+        b = floats(body_at[i], BODY_WORDS)
+        b[VX], b[VX + 1], b[SPIN] = before[i, 0], before[i, 1], before[i, 2]
+        move(body_at[i], -h * last[i, 0], -h * last[i, 1], -h * last[i, 2])
+
+
+@njit(error_model="numpy")
+def finish(c):  # type: ignore[no-untyped-def]
+    """End of a step: commit the laws, and tell Python when a joint broke or the step was refused."""
+    t = integers(c, at.CONTROL_WORDS)
+    if t[at.FAULT] < 0:
+        n, bodies = t[at.JOINTS], t[at.BODIES]
+        velocity = table(t[at.LAST_VELOCITY], bodies, 3)
+        load_velocities(t, velocity)
+        t[at.BROKE] = commit(
+            n,
+            integers(t[at.JOINT_BODIES], 2 * n).reshape(n, 2),
+            integers(t[at.LAWS], 5 * n).reshape(n, 5),
+            table(t[at.LIMITS], n, at.LIMITS_WORDS),
+            integers(t[at.ACTIVE], n),
+            table(t[at.DAMPING], n, 3),
+            floats(t[at.SETTINGS], at.SETTINGS_WORDS),
+            table(t[at.JACOBIAN], n, 18),
+            table(t[at.DEFORMATION], n, 3),
+            velocity,
+            table(t[at.IMPULSE], n, 3),
+            floats(t[at.SCALE], n),
+            table(t[at.RESULT], n, at.RESULT_WORDS),
+        )
+    if t[at.FAULT] >= 0 or t[at.BROKE] > 0:
+        call_notice(t[at.NOTICE], t[at.KEY])
+
+
+def _digest() -> str:
+    """Digest of all source that goes into the callbacks."""
+    here = Path(__file__).parent
+    files = sorted([*here.glob("*.py"), here.parent / "memory.py", here.parent / "chipmunk.py"])
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
+
+
+def _compile(digest: str) -> tuple[Any, ...]:
+    """The C functions; ``digest`` makes Numba's cache of them depend on the source of what they call."""
+    step = types.void(types.int64, types.float64)
+
+    @cfunc(step, cache=True)
+    def pre_step(constraint, h):  # type: ignore[no-untyped-def]
+        digest  # noqa: B018
+        c = integers(constraint, CONTROL + 1)[CONTROL]
+        t = integers(c, at.CONTROL_WORDS)
+        if t[at.LEADER] == 0:
+            t[at.LEADER] = constraint
+            begin(c, h)
+
+    @cfunc(step, cache=True)
+    def apply_cached_impulse(constraint, ratio):  # type: ignore[no-untyped-def]
+        # Nothing: the implicit solve needs no warm start.
+        digest  # noqa: B018
+
+    @cfunc(step, cache=True)
+    def apply_impulse(constraint, h):  # type: ignore[no-untyped-def]
+        digest  # noqa: B018
+        c = integers(constraint, CONTROL + 1)[CONTROL]
+        if integers(c, at.CONTROL_WORDS)[at.LEADER] == constraint:
+            solve(c)
+
+    @cfunc(types.float64(types.int64), cache=True)
+    def get_impulse(constraint):  # type: ignore[no-untyped-def]
+        digest  # noqa: B018
+        own = integers(constraint, CONTROL + 2)
+        t = integers(own[CONTROL], at.CONTROL_WORDS)
+        p = table(t[at.IMPULSE], t[at.JOINTS], 3)[own[CONTROL + 1]]
+        return math.hypot(p[0], p[1])
+
+    @cfunc(types.void(types.int64, types.int64), cache=True)
+    def after_step(constraint, space):  # type: ignore[no-untyped-def]
+        digest  # noqa: B018
+        c = integers(constraint, CONTROL + 1)[CONTROL]
+        t = integers(c, at.CONTROL_WORDS)
+        if t[at.LEADER] == constraint:
+            t[at.LEADER] = 0
+            finish(c)
+
+    return pre_step, apply_cached_impulse, apply_impulse, get_impulse, after_step
+
+
+_COMPILED = _compile(_digest())
+#: Chipmunk's table of functions for a constraint.
+FUNCTIONS = np.array([function.address for function in _COMPILED[:4]], dtype=np.int64)
+AFTER_STEP = _COMPILED[4].address

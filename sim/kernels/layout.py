@@ -1,0 +1,73 @@
+"""What lies where in the memory that the kernels and `sim.structure` share.
+
+The control table is int64: sizes, counters, flags, then the addresses of the arrays.
+"""
+
+# Sizes.
+BODIES, MOVING, JOINTS, LOWER = 0, 1, 2, 3
+# What happened: first joint whose law gave a number that is not finite (or -1), counters, newly broken joints.
+FAULT, NEWTON_STEPS, SOLVES, UNCONVERGED, BROKE = 4, 5, 6, 7, 8
+# Within a step: address of the constraint that acts for all (0 between steps); whether nothing was solved yet.
+LEADER, FRESH = 9, 10
+# Address of a C function (structure's key) called when a joint broke or a step failed, and that key.
+NOTICE, KEY = 11, 12
+_FIRST_ADDRESS = 13
+(
+    BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
+    JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
+    JOINT_BODIES,  # (joints, 2) int64
+    GEOMETRY,  # (joints, 7)
+    LAWS,  # (joints, 5) int64: respond, commit, parameters, state, length of the state
+    STIFFNESS,  # (joints, 6): elastic tangent
+    DAMPING,  # (joints, 3): force over rate of deformation
+    LIMITS,  # (joints, 4)
+    SCALE,  # (joints,): share of its force that a joint about to break may still give; 1 otherwise
+    SCRATCH,  # room for one joint's state
+    ACTIVE,  # (joints,) int64: 1 while the joint holds
+    COLUMN_START,  # (moving + 1,) int64
+    COLUMN_ROWS,  # (lower,) int64
+    FILL_TARGETS,  # int64
+    JOINT_SLOT,  # (joints,) int64
+    SETTINGS,  # (settings,)
+    JACOBIAN,  # (joints, 18): rows u, v, θ; columns a's vx vy ω, b's vx vy ω
+    DEFORMATION,  # (joints, 3): q at the step's start, less the part of the old velocities
+    LIGHTNESS,  # (joints, 3): diagonal of J M⁻¹ Jᵀ
+    IMPULSE,  # (joints, 3): λ
+    RESIDUAL,  # (joints, 3)
+    SLOPE,  # (joints, 3): Δλ
+    RESPONSE,  # (joints, 9)
+    VELOCITY,  # (bodies, 3)
+    START_VELOCITY,  # (bodies, 3): before the step's forces
+    LAST_VELOCITY,  # (bodies, 3): with which the last step ended, and the bodies were moved
+    SOLUTION,  # (moving, 3)
+    DIAGONAL,  # (moving, 9)
+    LOWER_BLOCKS,  # (lower, 9)
+    SCALED_BLOCKS,  # (lower, 9)
+    RESULT,  # (joints, 14)
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 31)
+CONTROL_WORDS = _FIRST_ADDRESS + 31
+
+# Settings (float64).
+STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL = 0, 1, 2, 3, 4
+SETTINGS_WORDS = 5
+
+# Geometry of a joint: anchor on a and on b (from their centres of gravity, body coordinates), rest angle of the
+# joint's frame on a and on b, share α of b's rotation in the frame.
+ANCHOR_A, ANCHOR_B, REST_A, REST_B, TURN = 0, 2, 4, 5, 6
+GEOMETRY_WORDS = 7
+
+# Limits of a joint: plastic elongation, slip and rotation at which it breaks, whether compression counts (1) or not.
+LIMITS_WORDS = 4
+
+# Response of a law: s = (N, Q, M), then the upper triangle of D = ∂s/∂q row by row.
+FORCE, TANGENT = 0, 3
+RESPONSE_WORDS = 9
+
+# What a law's commit gives: elastic energy, work dissipated in the step, plastic deformation added in it (u, v, θ).
+COMMIT_WORDS = 5
+
+# Result of a step: q*, force, plastic deformation summed without sign (elongation, shortening, slip, rotation),
+# elastic energy, plastic work so far, viscous work so far, share of the plastic capacity used.
+RESULT_Q, RESULT_FORCE, RESULT_PLASTIC = 0, 3, 6
+RESULT_ELASTIC, RESULT_DISSIPATED, RESULT_VISCOUS, RESULT_USED = 10, 11, 12, 13
+RESULT_WORDS = 14

@@ -1,0 +1,285 @@
+"""The impulses of all joints of a structure: Newton's method with a line search.
+
+With body velocities V, masses M, joint deformations q = (u, v, θ), J = ∂q̇/∂V, step h and a law's force s(q) with
+tangent D = ∂s/∂q, the joint impulses λ solve
+
+    λ = -h s(q*),   q* = qₙ + h J [(β + δ) V - β Vₙ],   M (V - V̂) = Jᵀ λ,
+
+where V̂ are the velocities without the joints. That is where a convex function of V is least (elastic energy, plastic
+dissipation, and kinetic distance to V̂), so Newton's method with a line search finds it:
+
+    (M + (β + δ) h² Jᵀ D J) ΔV = Jᵀ r,   r = -h s(q*) - λ,
+    Δλ = r - (β + δ) h² D J ΔV,          V += M⁻¹ Jᵀ Δλ.
+
+Bodies are only ever changed by pairs of impulses ± Jᵀ Δλ, so momentum is kept to rounding, converged or not.
+β = 0, δ = 1 is implicit Euler; β = ¼, δ = 0 the average-acceleration rule. Viscous forces c q̇ at the step's end are
+part of s, with c / h(β + δ) in D.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from sim.chipmunk import BODY_WORDS, MASS, MASS_INVERSE, MOMENT, MOMENT_INVERSE
+from sim.kernels.blocks import assemble, factorise, substitute
+from sim.kernels.kinematics import rates
+from sim.kernels.layout import BETA, DELTA, STEP, TANGENT
+from sim.memory import call_law, floats
+
+MOST_NEWTON_STEPS = 40
+MOST_SEARCHES = 12
+
+
+@njit(error_model="numpy")
+def respond(  # type: ignore[no-untyped-def]
+    n,
+    joint_bodies,
+    laws,
+    stiffness,
+    damping,
+    scale,
+    settings,
+    jacobian,
+    deformation,
+    lightness,
+    impulse,
+    velocity,
+    response,
+    residual,
+    predicting,
+):
+    """Residual r of every joint at the present velocities; returns its energy, and that of the impulses.
+
+    While ``predicting``, every law is replaced by its elastic line through the deformation qₙ at the step's start.
+    """
+    h = settings[STEP]
+    reach = h * (settings[BETA] + settings[DELTA])
+    error, size = 0.0, 0.0
+    q = np.empty(3)
+    for k in range(n):
+        x, y, z = rates(jacobian[k], velocity[joint_bodies[k, 0]], velocity[joint_bodies[k, 1]])
+        start, r = deformation[k], response[k]
+        if predicting:
+            call_law(laws[k, 0], laws[k, 2], laws[k, 3], start.ctypes.data, r.ctypes.data)
+            e = stiffness[k]
+            r[0] += reach * (e[0] * x + e[1] * y + e[2] * z)
+            r[1] += reach * (e[1] * x + e[3] * y + e[4] * z)
+            r[2] += reach * (e[2] * x + e[4] * y + e[5] * z)
+            r[3], r[4], r[5], r[6], r[7], r[8] = e[0], e[1], e[2], e[3], e[4], e[5]
+        else:
+            q[0], q[1], q[2] = start[0] + reach * x, start[1] + reach * y, start[2] + reach * z
+            call_law(laws[k, 0], laws[k, 2], laws[k, 3], q.ctypes.data, r.ctypes.data)
+            if scale[k] != 1.0:
+                for i in range(9):
+                    r[i] *= scale[k]
+        c = damping[k]
+        r[0] += c[0] * x
+        r[1] += c[1] * y
+        r[2] += c[2] * z
+        r[3] += c[0] / reach
+        r[6] += c[1] / reach
+        r[8] += c[2] / reach
+        p, out, light = impulse[k], residual[k], lightness[k]
+        for i in range(3):
+            out[i] = -h * r[i] - p[i]
+            error += light[i] * out[i] * out[i]
+            size += light[i] * p[i] * p[i]
+    return error, size
+
+
+@njit(error_model="numpy")
+def motion_scale(moving, body_at, velocity):  # type: ignore[no-untyped-def]
+    """Σ m v² + I ω² of the dynamic bodies."""
+    total = 0.0
+    for i in range(moving):
+        b, v = floats(body_at[i], BODY_WORDS), velocity[i]
+        total += b[MASS] * (v[0] * v[0] + v[1] * v[1]) + b[MOMENT] * v[2] * v[2]
+    return total
+
+
+@njit(error_model="numpy")
+def gather(n, moving, joint_bodies, jacobian, per_joint, per_body):  # type: ignore[no-untyped-def]
+    """Jᵀ times a vector of joint impulses."""
+    per_body[:moving, :] = 0.0
+    for k in range(n):
+        j, r = jacobian[k], per_joint[k]
+        px, py = j[3] * r[0] + j[9] * r[1], j[4] * r[0] + j[10] * r[1]
+        ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
+        if ia < moving:
+            x = per_body[ia]
+            x[0] -= px
+            x[1] -= py
+            x[2] += j[2] * r[0] + j[8] * r[1] + j[14] * r[2]
+        if ib < moving:
+            x = per_body[ib]
+            x[0] += px
+            x[1] += py
+            x[2] += j[5] * r[0] + j[11] * r[1] + j[17] * r[2]
+
+
+@njit(error_model="numpy")
+def linearise(  # type: ignore[no-untyped-def]
+    n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope
+):
+    """Δλ = r - factor D J ΔV; returns r · J ΔV, how fast the incremental energy falls along ΔV."""
+    fall = 0.0
+    still = np.zeros(3)
+    for k in range(n):
+        d, r, out = response[k], residual[k], slope[k]
+        ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
+        x, y, z = rates(jacobian[k], solution[ia] if ia < moving else still, solution[ib] if ib < moving else still)
+        fall += r[0] * x + r[1] * y + r[2] * z
+        x, y, z = factor * x, factor * y, factor * z
+        t = TANGENT
+        out[0] = r[0] - (d[t] * x + d[t + 1] * y + d[t + 2] * z)
+        out[1] = r[1] - (d[t + 1] * x + d[t + 3] * y + d[t + 4] * z)
+        out[2] = r[2] - (d[t + 2] * x + d[t + 4] * y + d[t + 5] * z)
+    return fall
+
+
+@njit(error_model="numpy")
+def descent(n, moving, joint_bodies, jacobian, residual, direction):  # type: ignore[no-untyped-def]
+    """r · J ΔV at the present residual."""
+    total = 0.0
+    still = np.zeros(3)
+    for k in range(n):
+        ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
+        x, y, z = rates(jacobian[k], direction[ia] if ia < moving else still, direction[ib] if ib < moving else still)
+        total += residual[k, 0] * x + residual[k, 1] * y + residual[k, 2] * z
+    return total
+
+
+@njit(error_model="numpy")
+def advance(n, moving, share, joint_bodies, body_at, jacobian, slope, impulse, velocity):  # type: ignore[no-untyped-def]
+    """λ += share Δλ and V += share M⁻¹ Jᵀ Δλ."""
+    for k in range(n):
+        j, p, s = jacobian[k], impulse[k], slope[k]
+        x, y, z = share * s[0], share * s[1], share * s[2]
+        p[0] += x
+        p[1] += y
+        p[2] += z
+        px, py = j[3] * x + j[9] * y, j[4] * x + j[10] * y
+        ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
+        if ia < moving:
+            b, v = floats(body_at[ia], BODY_WORDS), velocity[ia]
+            v[0] -= px * b[MASS_INVERSE]
+            v[1] -= py * b[MASS_INVERSE]
+            v[2] += (j[2] * x + j[8] * y + j[14] * z) * b[MOMENT_INVERSE]
+        if ib < moving:
+            b, v = floats(body_at[ib], BODY_WORDS), velocity[ib]
+            v[0] += px * b[MASS_INVERSE]
+            v[1] += py * b[MASS_INVERSE]
+            v[2] += (j[5] * x + j[11] * y + j[17] * z) * b[MOMENT_INVERSE]
+
+
+@njit(error_model="numpy")
+def iterate(  # type: ignore[no-untyped-def]
+    n,
+    moving,
+    joint_bodies,
+    body_at,
+    laws,
+    stiffness,
+    damping,
+    scale,
+    settings,
+    joint_slot,
+    column_start,
+    column_rows,
+    targets,
+    jacobian,
+    deformation,
+    lightness,
+    impulse,
+    velocity,
+    response,
+    residual,
+    slope,
+    solution,
+    diagonal,
+    lower,
+    scaled,
+    tolerance,
+    predicting,
+):
+    """Newton's method from the present velocities; returns steps taken, whether it converged, and the residual.
+
+    The first solve of a step is ``predicting``: it takes every joint as elastic. At the velocities without joints all
+    of them may seem to yield, and from there the way to the solution is long.
+    """
+    factor = settings[STEP] ** 2 * (settings[BETA] + settings[DELTA])
+    error, size = respond(
+        n,
+        joint_bodies,
+        laws,
+        stiffness,
+        damping,
+        scale,
+        settings,
+        jacobian,
+        deformation,
+        lightness,
+        impulse,
+        velocity,
+        response,
+        residual,
+        predicting,
+    )
+    motion = motion_scale(moving, body_at, velocity)
+    converged = not predicting and error <= tolerance * (size + motion)
+    best, steps = error, 0
+    while not converged and steps < MOST_NEWTON_STEPS:
+        steps += 1
+        assemble(n, moving, joint_bodies, body_at, joint_slot, factor, response, jacobian, diagonal, lower)
+        factorise(moving, column_start, column_rows, targets, diagonal, lower, scaled)
+        gather(n, moving, joint_bodies, jacobian, residual, solution)
+        substitute(moving, 0, column_start, column_rows, diagonal, scaled, solution)
+        start = linearise(n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope)
+        share, low, high, fall_low, fall_high = 1.0, 0.0, 1.0, start, 0.0
+        step_length = 1.0
+        for search in range(MOST_SEARCHES):
+            advance(n, moving, step_length, joint_bodies, body_at, jacobian, slope, impulse, velocity)
+            error, size = respond(
+                n,
+                joint_bodies,
+                laws,
+                stiffness,
+                damping,
+                scale,
+                settings,
+                jacobian,
+                deformation,
+                lightness,
+                impulse,
+                velocity,
+                response,
+                residual,
+                False,
+            )
+            converged = error <= tolerance * (size + motion)
+            if converged or predicting:
+                break
+            # Along the step the energy is convex: where it rises too steeply, its least value lies further back.
+            fall = descent(n, moving, joint_bodies, jacobian, residual, solution)
+            if search == 0:
+                if fall >= -0.5 * start:
+                    break
+                fall_high = fall
+            elif abs(fall) <= 0.3 * start:
+                break
+            elif fall > 0.0:
+                low, fall_low = share, fall
+            else:
+                high, fall_high = share, fall
+            new = low + (high - low) * fall_low / (fall_low - fall_high)
+            new = min(max(new, low + 0.05 * (high - low)), high - 0.05 * (high - low))
+            step_length = new - share
+            share = new
+        predicting = False
+        # Below this it is rounding that remains, and another step would not take it away.
+        if steps > 3 and error >= 0.25 * best and error <= 1e6 * tolerance * (size + motion):
+            converged = True
+        best = min(best, error)
+    total = size + motion
+    return steps, converged, math.sqrt(error / total) if total > 0.0 else 0.0

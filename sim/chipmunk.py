@@ -26,6 +26,24 @@ SPIN = 15
 # The body's transform: cos, sin, -sin, cos of the angle, and where its own origin is.
 COSINE, SINE, MINUS_SINE, COSINE_AGAIN, ORIGIN = 17, 18, 19, 20, 21
 CENTRE = 6
+# Beyond what every kernel reads: pseudo-velocities that take out overlap, and the list of contacts.
+BIAS_VX, BIAS_SPIN = 24, 26
+ARBITERS = 29
+BODY_FULL_WORDS = 31
+
+# cpArbiter: the contacts between two shapes.
+ARBITER_FRICTION, ARBITER_SURFACE = 1, 2
+ARBITER_BODY_A, ARBITER_BODY_B = 7, 8
+ARBITER_NEXT_A, ARBITER_NEXT_B = 9, 11
+ARBITER_COUNT, ARBITER_CONTACTS, ARBITER_NORMAL = 13, 14, 15
+ARBITER_WORDS = 17
+
+# cpContact: one point of contact.
+CONTACT_R1, CONTACT_R2 = 0, 2
+CONTACT_NORMAL_MASS, CONTACT_TANGENT_MASS, CONTACT_BOUNCE = 4, 5, 6
+CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE = 7, 8
+CONTACT_BIAS = 10
+CONTACT_WORDS, CONTACT_BYTES = 12, 96
 
 # In cpConstraint: the function table first; the first words past its end belong to the kind of joint, here a pivot
 # joint's anchors, which nobody reads once its functions are replaced.

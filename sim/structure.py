@@ -13,10 +13,13 @@ import pymunk
 from sim import chipmunk
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
+from sim.kernels.contacts import PLACE_WORDS, TOUCH_WORDS, hash_table
 from sim.laws import Law
 from sim.ordering import minimum_degree
 
 _TOLERANCE = 1e-9
+# Points of contact that a new structure has room for; more is made when needed.
+_ROOM = 8
 
 
 class SolverError(RuntimeError):
@@ -77,6 +80,7 @@ class Structure:
         laws[:, 4] = np.diff(self._state_ends)
         limits = [(j.limits.elongation, j.limits.slip, j.limits.rotation, j.limits.compression_counts) for j in joints]
         below = len(pattern.column_rows)
+        keys, values = hash_table([chipmunk.body_address(body) for body in self.bodies])
         self._settings = np.zeros(at.SETTINGS_WORDS)
         self._settings[[at.BETA, at.DELTA]] = joints[0].scheme
         self._settings[at.TOLERANCE] = tolerance**2
@@ -114,6 +118,8 @@ class Structure:
             at.LOWER_BLOCKS: np.zeros((below, 9)),
             at.SCALED_BLOCKS: np.zeros((below, 9)),
             at.RESULT: self._result,
+            at.BODY_KEYS: keys,
+            at.BODY_VALUES: values,
         }
         self._control = np.zeros(at.CONTROL_WORDS, dtype=np.int64)
         self._control[[at.BODIES, at.MOVING, at.JOINTS, at.LOWER]] = len(self.bodies), moving, n, below
@@ -121,8 +127,24 @@ class Structure:
         self._control[at.NOTICE] = int(ctypes.cast(_notice, ctypes.c_void_p).value or 0)
         self._control[at.KEY] = next(_keys)
         _structures[int(self._control[at.KEY])] = self
+        self._control[at.HASH_LENGTH] = len(keys)
         for word, array in self._arrays.items():
             self._control[word] = array.ctypes.data
+        self._make_room(_ROOM)
+
+    def _make_room(self, contacts: int) -> None:
+        """Memory for so many points of contact."""
+        new = {
+            at.PLACES: np.zeros((contacts, PLACE_WORDS), dtype=np.int64),
+            at.TOUCHES: np.zeros((contacts, TOUCH_WORDS)),
+            at.OPERATOR: np.zeros((2 * contacts, 2 * contacts)),
+            at.CONTACT_VELOCITY: np.zeros(2 * contacts),
+            at.CONTACT_CHANGE: np.zeros(2 * contacts),
+        }
+        self._arrays |= new
+        for word, array in new.items():
+            self._control[word] = array.ctypes.data
+        self._control[at.ROOM] = contacts
 
     def _take_over(self) -> None:
         """Make the joints this structure's, with the plastic state they had in another.
@@ -233,6 +255,11 @@ class Structure:
                 "body that was moved or pushed without bound, or take a shorter step or a lower stiffness"
             )
             _raise_after_step(_space_of(joint), error)
+            return
+        if self._control[at.MISSED] > 0:
+            # Chipmunk solved these by itself in this step; in the next there is room for them.
+            self._make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
+        if self._control[at.BROKE] == 0:
             return
         for joint in self.joints:
             if joint.broken and joint.structure is self:

@@ -27,12 +27,15 @@ from sim.chipmunk import (
     X,
 )
 from sim.kernels import layout as at
+from sim.kernels.blocks import assemble, factorise, substitute
 from sim.kernels.commit import commit, weaken
+from sim.kernels.contacts import PLACE_WORDS, TOUCH_WORDS, collect, complement, operator, push_apart, strike
 from sim.kernels.kinematics import prepare
-from sim.kernels.newton import iterate
+from sim.kernels.newton import advance, iterate, linearise
 from sim.memory import call_notice, floats, integers, table
 
-_MOST_BREAKING_ROUNDS = 30
+_MOST_ROUNDS = 40
+_SETTLED = 1e-6
 
 
 @njit(error_model="numpy")
@@ -69,6 +72,16 @@ def begin(c, h):  # type: ignore[no-untyped-def]
         table(t[at.DEFORMATION], n, 3),
         table(t[at.LIGHTNESS], n, 3),
         last,
+    )
+    t[at.PUSHED_APART] = 0
+    length, room = t[at.HASH_LENGTH], t[at.ROOM]
+    t[at.CONTACTS], t[at.MISSED] = collect(
+        t[at.MOVING],
+        body_at,
+        integers(t[at.BODY_KEYS], length),
+        integers(t[at.BODY_VALUES], length),
+        integers(t[at.PLACES], PLACE_WORDS * room).reshape(room, PLACE_WORDS),
+        table(t[at.TOUCHES], room, TOUCH_WORDS),
     )
 
 
@@ -111,8 +124,8 @@ def solve(c):  # type: ignore[no-untyped-def]
     predicting = t[at.FRESH] == 1
     t[at.FRESH] = 0
     t[at.SOLVES] += 1
-    converged, residual = False, 0.0
-    for _ in range(_MOST_BREAKING_ROUNDS):
+    converged, residual, untouched = False, 0.0, True
+    for _ in range(_MOST_ROUNDS):
         steps, converged, residual = iterate(
             n,
             moving,
@@ -158,7 +171,11 @@ def solve(c):  # type: ignore[no-untyped-def]
             floats(t[at.SCRATCH], 1),
             scale,
         )
-        if change <= 1e-4:
+        # Contacts are exact for the tangents they were solved with: once the joints agree, nothing is left to do.
+        if t[at.CONTACTS] > 0 and (steps > 0 or untouched):
+            untouched = False
+            change = max(change, touch(t, velocity))
+        if change <= _SETTLED:
             break
     settings[at.LAST_RESIDUAL] = residual
     for k in range(n):
@@ -174,6 +191,46 @@ def solve(c):  # type: ignore[no-untyped-def]
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)
         b[VX], b[VX + 1], b[SPIN] = velocity[i, 0], velocity[i, 1], velocity[i, 2]
+
+
+@njit(error_model="numpy")
+def touch(t, velocity):  # type: ignore[no-untyped-def]
+    """Solve the contacts through the structure as it now stands; returns by how much their impulses changed."""
+    moving, n, m, count, room = t[at.MOVING], t[at.JOINTS], t[at.LOWER], t[at.CONTACTS], t[at.ROOM]
+    joint_bodies = integers(t[at.JOINT_BODIES], 2 * n).reshape(n, 2)
+    body_at = integers(t[at.BODY_AT], t[at.BODIES])
+    settings = floats(t[at.SETTINGS], at.SETTINGS_WORDS)
+    column_start, column_rows = integers(t[at.COLUMN_START], moving + 1), integers(t[at.COLUMN_ROWS], m)
+    jacobian, response = table(t[at.JACOBIAN], n, 18), table(t[at.RESPONSE], n, at.RESPONSE_WORDS)
+    slope, solution = table(t[at.SLOPE], n, 3), table(t[at.SOLUTION], moving, 3)
+    diagonal, lower, scaled = (
+        table(t[at.DIAGONAL], moving, 9),
+        table(t[at.LOWER_BLOCKS], m, 9),
+        table(t[at.SCALED_BLOCKS], m, 9),
+    )
+    places = integers(t[at.PLACES], PLACE_WORDS * room).reshape(room, PLACE_WORDS)
+    touches, g = table(t[at.TOUCHES], room, TOUCH_WORDS), table(t[at.OPERATOR], 2 * room, 2 * room)
+    v, change = floats(t[at.CONTACT_VELOCITY], 2 * room), floats(t[at.CONTACT_CHANGE], 2 * room)
+    factor = settings[at.STEP] ** 2 * (settings[at.BETA] + settings[at.DELTA])
+    assemble(
+        n, moving, joint_bodies, body_at, integers(t[at.JOINT_SLOT], n), factor, response, jacobian, diagonal, lower
+    )
+    factorise(moving, column_start, column_rows, integers(t[at.FILL_TARGETS], 1), diagonal, lower, scaled)
+    operator(count, moving, places, touches, column_start, column_rows, diagonal, scaled, solution, g)
+    largest = complement(count, places, touches, velocity, g, v, change)
+    strike(count, moving, body_at, places, touches, change, velocity, solution)
+    # H ΔV = J_cᵀ Δj, and the joints take their part of it: Δλ = -(β + δ) h² D J ΔV.
+    substitute(moving, 0, column_start, column_rows, diagonal, scaled, solution)
+    still = np.zeros((n, 3))
+    linearise(n, moving, joint_bodies, factor, jacobian, still, response, solution, slope)
+    impulse = table(t[at.IMPULSE], n, 3)
+    advance(n, moving, 1.0, joint_bodies, body_at, jacobian, slope, impulse, velocity)
+    if t[at.PUSHED_APART] == 0:
+        t[at.PUSHED_APART] = 1
+        push_apart(
+            count, moving, body_at, places, touches, column_start, column_rows, diagonal, scaled, solution, g, v, change
+        )
+    return largest
 
 
 @njit(error_model="numpy")
@@ -212,7 +269,7 @@ def finish(c):  # type: ignore[no-untyped-def]
             floats(t[at.SCALE], n),
             table(t[at.RESULT], n, at.RESULT_WORDS),
         )
-    if t[at.FAULT] >= 0 or t[at.BROKE] > 0:
+    if t[at.FAULT] >= 0 or t[at.BROKE] > 0 or t[at.MISSED] > 0:
         call_notice(t[at.NOTICE], t[at.KEY])
 
 

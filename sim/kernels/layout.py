@@ -11,7 +11,10 @@ FAULT, NEWTON_STEPS, SOLVES, UNCONVERGED, BROKE = 4, 5, 6, 7, 8
 LEADER, FRESH = 9, 10
 # Address of a C function (structure's key) called when a joint broke or a step failed, and that key.
 NOTICE, KEY = 11, 12
-_FIRST_ADDRESS = 13
+# Contacts of this step, room for them, those there was no room for, length of the hash table; whether overlap has
+# been taken out in this step.
+CONTACTS, ROOM, MISSED, HASH_LENGTH, PUSHED_APART = 13, 14, 15, 16, 17
+_FIRST_ADDRESS = 18
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -44,8 +47,15 @@ _FIRST_ADDRESS = 13
     LOWER_BLOCKS,  # (lower, 9)
     SCALED_BLOCKS,  # (lower, 9)
     RESULT,  # (joints, 14)
-) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 31)
-CONTROL_WORDS = _FIRST_ADDRESS + 31
+    BODY_KEYS,  # hash table from a body's address …
+    BODY_VALUES,  # … to its index
+    PLACES,  # (room, 5) int64: contacts, see `contacts`
+    TOUCHES,  # (room, 10)
+    OPERATOR,  # (2 room, 2 room)
+    CONTACT_VELOCITY,  # (2 room,)
+    CONTACT_CHANGE,  # (2 room,)
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 38)
+CONTROL_WORDS = _FIRST_ADDRESS + 38
 
 # Settings (float64).
 STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL = 0, 1, 2, 3, 4

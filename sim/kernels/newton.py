@@ -28,7 +28,8 @@ from sim.kernels.layout import BETA, DELTA, STEP, TANGENT
 from sim.memory import call_law, floats
 
 MOST_NEWTON_STEPS = 40
-MOST_SEARCHES = 12
+MOST_SEARCHES = 40
+_KINK = 1e-3
 
 
 @njit(error_model="numpy")
@@ -272,8 +273,34 @@ def iterate(  # type: ignore[no-untyped-def]
                 low, fall_low = share, fall
             else:
                 high, fall_high = share, fall
-            new = low + (high - low) * fall_low / (fall_low - fall_high)
-            new = min(max(new, low + 0.05 * (high - low)), high - 0.05 * (high - low))
+            if high - low <= _KINK * high:
+                # The slope jumps here, where a joint stops yielding. Beyond the jump its tangent is the stiff one, and
+                # the next step can follow it; before it the same step would be tried again.
+                if fall > 0.0:
+                    advance(n, moving, high - share, joint_bodies, body_at, jacobian, slope, impulse, velocity)
+                    error, size = respond(
+                        n,
+                        joint_bodies,
+                        laws,
+                        stiffness,
+                        damping,
+                        scale,
+                        settings,
+                        jacobian,
+                        deformation,
+                        lightness,
+                        impulse,
+                        velocity,
+                        response,
+                        residual,
+                        False,
+                    )
+                break
+            if search % 3 == 2:
+                new = 0.5 * (low + high)
+            else:
+                new = low + (high - low) * fall_low / (fall_low - fall_high)
+                new = min(max(new, low + 0.02 * (high - low)), high - 0.02 * (high - low))
             step_length = new - share
             share = new
         predicting = False

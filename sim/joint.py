@@ -103,7 +103,9 @@ class DuctileJoint(pymunk.Constraint):
         self.limits = limits
         self.scheme = scheme
         self.on_break = on_break
-        self.geometry = [*_anchor(a, self.at), *_anchor(b, self.at), direction - a.angle, direction - b.angle, turn]
+        rest = (direction - a.angle, direction - b.angle)
+        axes = [f(angle) for angle in rest for f in (math.cos, math.sin)]
+        self.geometry = [*_anchor(a, self.at), *_anchor(b, self.at), *rest, turn, *axes]
         for what, values in (
             ("position or direction", self.geometry),
             ("stiffness", law.elastic_tangent()),

@@ -113,7 +113,7 @@ class Structure:
             at.VELOCITY: np.zeros((len(self.bodies), 3)),
             at.START_VELOCITY: np.zeros((len(self.bodies), 3)),
             at.LAST_VELOCITY: np.zeros((len(self.bodies), 3)),
-            at.SOLUTION: np.zeros((moving, 3)),
+            at.SOLUTION: np.zeros((len(self.bodies), 3)),
             at.DIAGONAL: np.zeros((moving, 9)),
             at.LOWER_BLOCKS: np.zeros((below, 9)),
             at.SCALED_BLOCKS: np.zeros((below, 9)),
@@ -124,6 +124,7 @@ class Structure:
         self._control = np.zeros(at.CONTROL_WORDS, dtype=np.int64)
         self._control[[at.BODIES, at.MOVING, at.JOINTS, at.LOWER]] = len(self.bodies), moving, n, below
         self._control[at.FAULT] = -1
+        self._control[at.BREAKABLE] = int(np.isfinite(self._arrays[at.LIMITS][:, :3]).any())
         self._control[at.NOTICE] = int(ctypes.cast(_notice, ctypes.c_void_p).value or 0)
         self._control[at.KEY] = next(_keys)
         _structures[int(self._control[at.KEY])] = self

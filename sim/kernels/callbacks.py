@@ -100,11 +100,14 @@ def move(body, x, y, turn):  # type: ignore[no-untyped-def]
 
 @njit(error_model="numpy")
 def load_velocities(t, velocity):  # type: ignore[no-untyped-def]
-    """Copy the bodies' velocities into ``velocity``."""
+    """Copy the bodies' velocities into ``velocity``; returns whether any differs from what was there."""
     body_at = integers(t[at.BODY_AT], t[at.BODIES])
+    differs = False
     for i in range(t[at.BODIES]):
-        b = floats(body_at[i], BODY_WORDS)
-        velocity[i, 0], velocity[i, 1], velocity[i, 2] = b[VX], b[VX + 1], b[SPIN]
+        b, v = floats(body_at[i], BODY_WORDS), velocity[i]
+        differs = differs or v[0] != b[VX] or v[1] != b[VX + 1] or v[2] != b[SPIN]
+        v[0], v[1], v[2] = b[VX], b[VX + 1], b[SPIN]
+    return differs
 
 
 @njit(error_model="numpy")
@@ -120,8 +123,9 @@ def solve(c):  # type: ignore[no-untyped-def]
     settings, scale = floats(t[at.SETTINGS], at.SETTINGS_WORDS), floats(t[at.SCALE], n)
     jacobian, deformation = table(t[at.JACOBIAN], n, 18), table(t[at.DEFORMATION], n, 3)
     impulse, velocity = table(t[at.IMPULSE], n, 3), table(t[at.VELOCITY], bodies, 3)
-    load_velocities(t, velocity)
     predicting = t[at.FRESH] == 1
+    if not load_velocities(t, velocity) and not predicting and t[at.CONTACTS] == 0:
+        return  # nothing else has touched the structure since it was solved
     t[at.FRESH] = 0
     t[at.SOLVES] += 1
     converged, residual, untouched = False, 0.0, True
@@ -148,7 +152,7 @@ def solve(c):  # type: ignore[no-untyped-def]
             table(t[at.RESPONSE], n, at.RESPONSE_WORDS),
             table(t[at.RESIDUAL], n, 3),
             table(t[at.SLOPE], n, 3),
-            table(t[at.SOLUTION], moving, 3),
+            table(t[at.SOLUTION], t[at.BODIES], 3),
             table(t[at.DIAGONAL], moving, 9),
             table(t[at.LOWER_BLOCKS], m, 9),
             table(t[at.SCALED_BLOCKS], m, 9),
@@ -157,20 +161,22 @@ def solve(c):  # type: ignore[no-untyped-def]
         )
         t[at.NEWTON_STEPS] += steps
         predicting = False
-        change = weaken(
-            n,
-            joint_bodies,
-            laws,
-            table(t[at.LIMITS], n, at.LIMITS_WORDS),
-            integers(t[at.ACTIVE], n),
-            settings,
-            jacobian,
-            deformation,
-            velocity,
-            table(t[at.RESULT], n, at.RESULT_WORDS),
-            floats(t[at.SCRATCH], 1),
-            scale,
-        )
+        change = 0.0
+        if t[at.BREAKABLE] == 1:
+            change = weaken(
+                n,
+                joint_bodies,
+                laws,
+                table(t[at.LIMITS], n, at.LIMITS_WORDS),
+                integers(t[at.ACTIVE], n),
+                settings,
+                jacobian,
+                deformation,
+                velocity,
+                table(t[at.RESULT], n, at.RESULT_WORDS),
+                floats(t[at.SCRATCH], 1),
+                scale,
+            )
         # Contacts are exact for the tangents they were solved with: once the joints agree, nothing is left to do.
         if t[at.CONTACTS] > 0 and (steps > 0 or untouched):
             untouched = False
@@ -202,7 +208,7 @@ def touch(t, velocity):  # type: ignore[no-untyped-def]
     settings = floats(t[at.SETTINGS], at.SETTINGS_WORDS)
     column_start, column_rows = integers(t[at.COLUMN_START], moving + 1), integers(t[at.COLUMN_ROWS], m)
     jacobian, response = table(t[at.JACOBIAN], n, 18), table(t[at.RESPONSE], n, at.RESPONSE_WORDS)
-    slope, solution = table(t[at.SLOPE], n, 3), table(t[at.SOLUTION], moving, 3)
+    slope, solution = table(t[at.SLOPE], n, 3), table(t[at.SOLUTION], t[at.BODIES], 3)
     diagonal, lower, scaled = (
         table(t[at.DIAGONAL], moving, 9),
         table(t[at.LOWER_BLOCKS], m, 9),

@@ -61,7 +61,7 @@ def weaken(  # type: ignore[no-untyped-def]
         limit = limits[k]
         if active[k] == 0 or (limit[0] == np.inf and limit[1] == np.inf and limit[2] == np.inf):
             continue
-        x, y, z = rates(jacobian[k], velocity[joint_bodies[k, 0]], velocity[joint_bodies[k, 1]])
+        x, y, z = rates(jacobian, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         q[0], q[1], q[2] = (
             deformation[k, 0] + reach * x,
             deformation[k, 1] + reach * y,
@@ -95,7 +95,7 @@ def commit(  # type: ignore[no-untyped-def]
             r[0:RESULT_PLASTIC] = 0.0
             r[RESULT_ELASTIC] = 0.0
             continue
-        x, y, z = rates(jacobian[k], velocity[joint_bodies[k, 0]], velocity[joint_bodies[k, 1]])
+        x, y, z = rates(jacobian, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         start, c = deformation[k], damping[k]
         q[0], q[1], q[2] = start[0] + reach * x, start[1] + reach * y, start[2] + reach * z
         for i in range(3):

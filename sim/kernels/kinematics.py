@@ -14,7 +14,7 @@ import math
 from numba import njit
 
 from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, COSINE, MASS_INVERSE, MOMENT_INVERSE, SINE, X
-from sim.kernels.layout import ANCHOR_A, ANCHOR_B, BETA, REST_A, REST_B, STEP, TURN
+from sim.kernels.layout import ANCHOR_A, ANCHOR_B, AXIS_A, AXIS_B, BETA, REST_A, REST_B, STEP, TURN
 from sim.memory import floats, integers
 
 
@@ -25,47 +25,79 @@ def prepare(  # type: ignore[no-untyped-def]
     """Deformation and gradient at the bodies' present positions; joints no longer in the space get none."""
     beta, h = settings[BETA], settings[STEP]
     for k in range(n):
-        j, q, light = jacobian[k], deformation[k], lightness[k]
         if integers(joint_at[k], CONSTRAINT_SPACE + 1)[CONSTRAINT_SPACE] == 0:
             active[k] = 0
         if active[k] == 0:
-            j[:] = 0.0
-            light[:] = 0.0
+            for i in range(18):
+                jacobian[k, i] = 0.0
+            for i in range(3):
+                lightness[k, i] = 0.0
             continue
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
-        a, b, g = floats(body_at[ia], BODY_WORDS), floats(body_at[ib], BODY_WORDS), geometry[k]
-        rax = a[COSINE] * g[ANCHOR_A] - a[SINE] * g[ANCHOR_A + 1]
-        ray = a[SINE] * g[ANCHOR_A] + a[COSINE] * g[ANCHOR_A + 1]
-        rbx = b[COSINE] * g[ANCHOR_B] - b[SINE] * g[ANCHOR_B + 1]
-        rby = b[SINE] * g[ANCHOR_B] + b[COSINE] * g[ANCHOR_B + 1]
+        a, b = floats(body_at[ia], BODY_WORDS), floats(body_at[ib], BODY_WORDS)
+        rax = a[COSINE] * geometry[k, ANCHOR_A] - a[SINE] * geometry[k, ANCHOR_A + 1]
+        ray = a[SINE] * geometry[k, ANCHOR_A] + a[COSINE] * geometry[k, ANCHOR_A + 1]
+        rbx = b[COSINE] * geometry[k, ANCHOR_B] - b[SINE] * geometry[k, ANCHOR_B + 1]
+        rby = b[SINE] * geometry[k, ANCHOR_B] + b[COSINE] * geometry[k, ANCHOR_B + 1]
         dx, dy = b[X] + rbx - a[X] - rax, b[X + 1] + rby - a[X + 1] - ray
-        alpha = g[TURN]
-        angle_a, angle_b = a[ANGLE] + g[REST_A], b[ANGLE] + g[REST_B]
-        psi = (1.0 - alpha) * angle_a + alpha * angle_b
-        c, s = math.cos(psi), math.sin(psi)
+        alpha = geometry[k, TURN]
+        angle_a, angle_b = a[ANGLE] + geometry[k, REST_A], b[ANGLE] + geometry[k, REST_B]
+        c, s = frame(a, b, geometry, k, angle_a, angle_b)
         u, v = c * dx + s * dy, -s * dx + c * dy
-        j[0], j[1], j[2] = -c, -s, c * ray - s * rax + (1.0 - alpha) * v
-        j[3], j[4], j[5] = c, s, -c * rby + s * rbx + alpha * v
-        j[6], j[7], j[8] = s, -c, -s * ray - c * rax - (1.0 - alpha) * u
-        j[9], j[10], j[11] = -s, c, s * rby + c * rbx - alpha * u
-        j[12], j[13], j[14], j[15], j[16], j[17] = 0.0, 0.0, -1.0, 0.0, 0.0, 1.0
+        jacobian[k, 0], jacobian[k, 1], jacobian[k, 2] = -c, -s, c * ray - s * rax + (1.0 - alpha) * v
+        jacobian[k, 3], jacobian[k, 4], jacobian[k, 5] = c, s, -c * rby + s * rbx + alpha * v
+        jacobian[k, 6], jacobian[k, 7], jacobian[k, 8] = s, -c, -s * ray - c * rax - (1.0 - alpha) * u
+        jacobian[k, 9], jacobian[k, 10], jacobian[k, 11] = -s, c, s * rby + c * rbx - alpha * u
+        jacobian[k, 12], jacobian[k, 13], jacobian[k, 14], jacobian[k, 15], jacobian[k, 16], jacobian[k, 17] = (
+            0.0,
+            0.0,
+            -1.0,
+            0.0,
+            0.0,
+            1.0,
+        )
         mass, turn_a, turn_b = a[MASS_INVERSE] + b[MASS_INVERSE], a[MOMENT_INVERSE], b[MOMENT_INVERSE]
-        light[0] = mass + j[2] * j[2] * turn_a + j[5] * j[5] * turn_b
-        light[1] = mass + j[8] * j[8] * turn_a + j[11] * j[11] * turn_b
-        light[2] = turn_a + turn_b
-        q[0], q[1], q[2] = u, v, angle_b - angle_a
+        lightness[k, 0] = mass + jacobian[k, 2] * jacobian[k, 2] * turn_a + jacobian[k, 5] * jacobian[k, 5] * turn_b
+        lightness[k, 1] = mass + jacobian[k, 8] * jacobian[k, 8] * turn_a + jacobian[k, 11] * jacobian[k, 11] * turn_b
+        lightness[k, 2] = turn_a + turn_b
+        deformation[k, 0], deformation[k, 1], deformation[k, 2] = u, v, angle_b - angle_a
         if beta != 0.0:
-            x, y, z = rates(j, velocity[ia], velocity[ib])
-            q[0] -= beta * h * x
-            q[1] -= beta * h * y
-            q[2] -= beta * h * z
+            x, y, z = rates(jacobian, k, velocity, ia, velocity, ib)
+            deformation[k, 0] -= beta * h * x
+            deformation[k, 1] -= beta * h * y
+            deformation[k, 2] -= beta * h * z
 
 
 @njit(inline="always", error_model="numpy")
-def rates(j, va, vb):  # type: ignore[no-untyped-def]
-    """J times the velocities of a joint's two bodies."""
+def frame(a, b, geometry, k, angle_a, angle_b):  # type: ignore[no-untyped-def]
+    """Cosine and sine of ψ; halfway between the two bodies' axes without an angle function, while they are near."""
+    alpha = geometry[k, TURN]
+    if alpha == 0.5 and abs(angle_b - angle_a) < 1.0:
+        c = (
+            a[COSINE] * geometry[k, AXIS_A]
+            - a[SINE] * geometry[k, AXIS_A + 1]
+            + b[COSINE] * geometry[k, AXIS_B]
+            - b[SINE] * geometry[k, AXIS_B + 1]
+        )
+        s = (
+            a[SINE] * geometry[k, AXIS_A]
+            + a[COSINE] * geometry[k, AXIS_A + 1]
+            + b[SINE] * geometry[k, AXIS_B]
+            + b[COSINE] * geometry[k, AXIS_B + 1]
+        )
+        size = 1.0 / math.sqrt(c * c + s * s)
+        return c * size, s * size
+    psi = (1.0 - alpha) * angle_a + alpha * angle_b
+    return math.cos(psi), math.sin(psi)
+
+
+@njit(inline="always", error_model="numpy")
+def rates(j, k, va, ia, vb, ib):  # type: ignore[no-untyped-def]
+    """J of joint k times the velocities of its two bodies, rows ia of va and ib of vb."""
+    a0, a1, a2 = va[ia, 0], va[ia, 1], va[ia, 2]
+    b0, b1, b2 = vb[ib, 0], vb[ib, 1], vb[ib, 2]
     return (
-        j[0] * va[0] + j[1] * va[1] + j[2] * va[2] + j[3] * vb[0] + j[4] * vb[1] + j[5] * vb[2],
-        j[6] * va[0] + j[7] * va[1] + j[8] * va[2] + j[9] * vb[0] + j[10] * vb[1] + j[11] * vb[2],
-        vb[2] * j[17] + va[2] * j[14],
+        j[k, 0] * a0 + j[k, 1] * a1 + j[k, 2] * a2 + j[k, 3] * b0 + j[k, 4] * b1 + j[k, 5] * b2,
+        j[k, 6] * a0 + j[k, 7] * a1 + j[k, 8] * a2 + j[k, 9] * b0 + j[k, 10] * b1 + j[k, 11] * b2,
+        j[k, 14] * a2 + j[k, 17] * b2,
     )

@@ -14,12 +14,14 @@ NOTICE, KEY = 11, 12
 # Contacts of this step, room for them, those there was no room for, length of the hash table; whether overlap has
 # been taken out in this step.
 CONTACTS, ROOM, MISSED, HASH_LENGTH, PUSHED_APART = 13, 14, 15, 16, 17
-_FIRST_ADDRESS = 18
+# Whether any joint has a limit.
+BREAKABLE = 18
+_FIRST_ADDRESS = 19
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
     JOINT_BODIES,  # (joints, 2) int64
-    GEOMETRY,  # (joints, 7)
+    GEOMETRY,  # (joints, 11)
     LAWS,  # (joints, 5) int64: respond, commit, parameters, state, length of the state
     STIFFNESS,  # (joints, 6): elastic tangent
     DAMPING,  # (joints, 3): force over rate of deformation
@@ -42,7 +44,7 @@ _FIRST_ADDRESS = 18
     VELOCITY,  # (bodies, 3)
     START_VELOCITY,  # (bodies, 3): before the step's forces
     LAST_VELOCITY,  # (bodies, 3): with which the last step ended, and the bodies were moved
-    SOLUTION,  # (moving, 3)
+    SOLUTION,  # (bodies, 3); stays zero for bodies that do not move
     DIAGONAL,  # (moving, 9)
     LOWER_BLOCKS,  # (lower, 9)
     SCALED_BLOCKS,  # (lower, 9)
@@ -62,9 +64,9 @@ STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL = 0, 1, 2, 3, 4
 SETTINGS_WORDS = 5
 
 # Geometry of a joint: anchor on a and on b (from their centres of gravity, body coordinates), rest angle of the
-# joint's frame on a and on b, share α of b's rotation in the frame.
-ANCHOR_A, ANCHOR_B, REST_A, REST_B, TURN = 0, 2, 4, 5, 6
-GEOMETRY_WORDS = 7
+# joint's frame on a and on b, share α of b's rotation in the frame, cosine and sine of the two rest angles.
+ANCHOR_A, ANCHOR_B, REST_A, REST_B, TURN, AXIS_A, AXIS_B = 0, 2, 4, 5, 6, 7, 9
+GEOMETRY_WORDS = 11
 
 # Limits of a joint: plastic elongation, slip and rotation at which it breaks, whether compression counts (1) or not.
 LIMITS_WORDS = 4

@@ -59,33 +59,34 @@ def respond(  # type: ignore[no-untyped-def]
     error, size = 0.0, 0.0
     q = np.empty(3)
     for k in range(n):
-        x, y, z = rates(jacobian[k], velocity[joint_bodies[k, 0]], velocity[joint_bodies[k, 1]])
-        start, r = deformation[k], response[k]
+        x, y, z = rates(jacobian, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         if predicting:
-            call_law(laws[k, 0], laws[k, 2], laws[k, 3], start.ctypes.data, r.ctypes.data)
-            e = stiffness[k]
-            r[0] += reach * (e[0] * x + e[1] * y + e[2] * z)
-            r[1] += reach * (e[1] * x + e[3] * y + e[4] * z)
-            r[2] += reach * (e[2] * x + e[4] * y + e[5] * z)
-            r[3], r[4], r[5], r[6], r[7], r[8] = e[0], e[1], e[2], e[3], e[4], e[5]
+            call_law(laws[k, 0], laws[k, 2], laws[k, 3], deformation[k].ctypes.data, response[k].ctypes.data)
+            response[k, 0] += reach * (stiffness[k, 0] * x + stiffness[k, 1] * y + stiffness[k, 2] * z)
+            response[k, 1] += reach * (stiffness[k, 1] * x + stiffness[k, 3] * y + stiffness[k, 4] * z)
+            response[k, 2] += reach * (stiffness[k, 2] * x + stiffness[k, 4] * y + stiffness[k, 5] * z)
+            for i in range(6):
+                response[k, TANGENT + i] = stiffness[k, i]
         else:
-            q[0], q[1], q[2] = start[0] + reach * x, start[1] + reach * y, start[2] + reach * z
-            call_law(laws[k, 0], laws[k, 2], laws[k, 3], q.ctypes.data, r.ctypes.data)
+            q[0], q[1], q[2] = (
+                deformation[k, 0] + reach * x,
+                deformation[k, 1] + reach * y,
+                deformation[k, 2] + reach * z,
+            )
+            call_law(laws[k, 0], laws[k, 2], laws[k, 3], q.ctypes.data, response[k].ctypes.data)
             if scale[k] != 1.0:
                 for i in range(9):
-                    r[i] *= scale[k]
-        c = damping[k]
-        r[0] += c[0] * x
-        r[1] += c[1] * y
-        r[2] += c[2] * z
-        r[3] += c[0] / reach
-        r[6] += c[1] / reach
-        r[8] += c[2] / reach
-        p, out, light = impulse[k], residual[k], lightness[k]
+                    response[k, i] *= scale[k]
+        response[k, 0] += damping[k, 0] * x
+        response[k, 1] += damping[k, 1] * y
+        response[k, 2] += damping[k, 2] * z
+        response[k, 3] += damping[k, 0] / reach
+        response[k, 6] += damping[k, 1] / reach
+        response[k, 8] += damping[k, 2] / reach
         for i in range(3):
-            out[i] = -h * r[i] - p[i]
-            error += light[i] * out[i] * out[i]
-            size += light[i] * p[i] * p[i]
+            residual[k, i] = -h * response[k, i] - impulse[k, i]
+            error += lightness[k, i] * residual[k, i] * residual[k, i]
+            size += lightness[k, i] * impulse[k, i] * impulse[k, i]
     return error, size
 
 
@@ -94,29 +95,29 @@ def motion_scale(moving, body_at, velocity):  # type: ignore[no-untyped-def]
     """Σ m v² + I ω² of the dynamic bodies."""
     total = 0.0
     for i in range(moving):
-        b, v = floats(body_at[i], BODY_WORDS), velocity[i]
-        total += b[MASS] * (v[0] * v[0] + v[1] * v[1]) + b[MOMENT] * v[2] * v[2]
+        b = floats(body_at[i], BODY_WORDS)
+        x, y, w = velocity[i, 0], velocity[i, 1], velocity[i, 2]
+        total += b[MASS] * (x * x + y * y) + b[MOMENT] * w * w
     return total
 
 
 @njit(error_model="numpy")
 def gather(n, moving, joint_bodies, jacobian, per_joint, per_body):  # type: ignore[no-untyped-def]
     """Jᵀ times a vector of joint impulses."""
-    per_body[:moving, :] = 0.0
+    for i in range(moving):
+        per_body[i, 0], per_body[i, 1], per_body[i, 2] = 0.0, 0.0, 0.0
     for k in range(n):
-        j, r = jacobian[k], per_joint[k]
-        px, py = j[3] * r[0] + j[9] * r[1], j[4] * r[0] + j[10] * r[1]
+        r0, r1, r2 = per_joint[k, 0], per_joint[k, 1], per_joint[k, 2]
+        px, py = jacobian[k, 3] * r0 + jacobian[k, 9] * r1, jacobian[k, 4] * r0 + jacobian[k, 10] * r1
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         if ia < moving:
-            x = per_body[ia]
-            x[0] -= px
-            x[1] -= py
-            x[2] += j[2] * r[0] + j[8] * r[1] + j[14] * r[2]
+            per_body[ia, 0] -= px
+            per_body[ia, 1] -= py
+            per_body[ia, 2] += jacobian[k, 2] * r0 + jacobian[k, 8] * r1 + jacobian[k, 14] * r2
         if ib < moving:
-            x = per_body[ib]
-            x[0] += px
-            x[1] += py
-            x[2] += j[5] * r[0] + j[11] * r[1] + j[17] * r[2]
+            per_body[ib, 0] += px
+            per_body[ib, 1] += py
+            per_body[ib, 2] += jacobian[k, 5] * r0 + jacobian[k, 11] * r1 + jacobian[k, 17] * r2
 
 
 @njit(error_model="numpy")
@@ -125,17 +126,15 @@ def linearise(  # type: ignore[no-untyped-def]
 ):
     """Δλ = r - factor D J ΔV; returns r · J ΔV, how fast the incremental energy falls along ΔV."""
     fall = 0.0
-    still = np.zeros(3)
     for k in range(n):
-        d, r, out = response[k], residual[k], slope[k]
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
-        x, y, z = rates(jacobian[k], solution[ia] if ia < moving else still, solution[ib] if ib < moving else still)
-        fall += r[0] * x + r[1] * y + r[2] * z
+        x, y, z = rates(jacobian, k, solution, ia, solution, ib)
+        fall += residual[k, 0] * x + residual[k, 1] * y + residual[k, 2] * z
         x, y, z = factor * x, factor * y, factor * z
         t = TANGENT
-        out[0] = r[0] - (d[t] * x + d[t + 1] * y + d[t + 2] * z)
-        out[1] = r[1] - (d[t + 1] * x + d[t + 3] * y + d[t + 4] * z)
-        out[2] = r[2] - (d[t + 2] * x + d[t + 4] * y + d[t + 5] * z)
+        slope[k, 0] = residual[k, 0] - (response[k, t] * x + response[k, t + 1] * y + response[k, t + 2] * z)
+        slope[k, 1] = residual[k, 1] - (response[k, t + 1] * x + response[k, t + 3] * y + response[k, t + 4] * z)
+        slope[k, 2] = residual[k, 2] - (response[k, t + 2] * x + response[k, t + 4] * y + response[k, t + 5] * z)
     return fall
 
 
@@ -143,10 +142,9 @@ def linearise(  # type: ignore[no-untyped-def]
 def descent(n, moving, joint_bodies, jacobian, residual, direction):  # type: ignore[no-untyped-def]
     """r · J ΔV at the present residual."""
     total = 0.0
-    still = np.zeros(3)
     for k in range(n):
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
-        x, y, z = rates(jacobian[k], direction[ia] if ia < moving else still, direction[ib] if ib < moving else still)
+        x, y, z = rates(jacobian, k, direction, ia, direction, ib)
         total += residual[k, 0] * x + residual[k, 1] * y + residual[k, 2] * z
     return total
 
@@ -155,23 +153,22 @@ def descent(n, moving, joint_bodies, jacobian, residual, direction):  # type: ig
 def advance(n, moving, share, joint_bodies, body_at, jacobian, slope, impulse, velocity):  # type: ignore[no-untyped-def]
     """λ += share Δλ and V += share M⁻¹ Jᵀ Δλ."""
     for k in range(n):
-        j, p, s = jacobian[k], impulse[k], slope[k]
-        x, y, z = share * s[0], share * s[1], share * s[2]
-        p[0] += x
-        p[1] += y
-        p[2] += z
-        px, py = j[3] * x + j[9] * y, j[4] * x + j[10] * y
+        x, y, z = share * slope[k, 0], share * slope[k, 1], share * slope[k, 2]
+        impulse[k, 0] += x
+        impulse[k, 1] += y
+        impulse[k, 2] += z
+        px, py = jacobian[k, 3] * x + jacobian[k, 9] * y, jacobian[k, 4] * x + jacobian[k, 10] * y
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         if ia < moving:
-            b, v = floats(body_at[ia], BODY_WORDS), velocity[ia]
-            v[0] -= px * b[MASS_INVERSE]
-            v[1] -= py * b[MASS_INVERSE]
-            v[2] += (j[2] * x + j[8] * y + j[14] * z) * b[MOMENT_INVERSE]
+            b = floats(body_at[ia], BODY_WORDS)
+            velocity[ia, 0] -= px * b[MASS_INVERSE]
+            velocity[ia, 1] -= py * b[MASS_INVERSE]
+            velocity[ia, 2] += (jacobian[k, 2] * x + jacobian[k, 8] * y + jacobian[k, 14] * z) * b[MOMENT_INVERSE]
         if ib < moving:
-            b, v = floats(body_at[ib], BODY_WORDS), velocity[ib]
-            v[0] += px * b[MASS_INVERSE]
-            v[1] += py * b[MASS_INVERSE]
-            v[2] += (j[5] * x + j[11] * y + j[17] * z) * b[MOMENT_INVERSE]
+            b = floats(body_at[ib], BODY_WORDS)
+            velocity[ib, 0] += px * b[MASS_INVERSE]
+            velocity[ib, 1] += py * b[MASS_INVERSE]
+            velocity[ib, 2] += (jacobian[k, 5] * x + jacobian[k, 11] * y + jacobian[k, 17] * z) * b[MOMENT_INVERSE]
 
 
 @njit(error_model="numpy")

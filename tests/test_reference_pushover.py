@@ -77,7 +77,7 @@ def test_a_turned_frame_answers_the_same(turn: float) -> None:
         title="turned",
         nodes=nodes,
         members=straight.members,
-        push=type(straight.push)(node="tip", direction=(float(s), float(-c)), distance=straight.push.distance),
+        pushed=type(straight.push)(node="tip", direction=(float(s), float(-c)), distance=straight.push.distance),
         gravity=straight.gravity,
     )
     distances = np.linspace(0.0, 0.03, 11)[1:]

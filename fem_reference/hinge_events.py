@@ -1,9 +1,14 @@
 """Where and when plastic hinges form along a path.
 
-A fibre section yields gradually. It counts as a hinge when its moment first reaches `FULL` of M_pl,N, the moment of the
-wholly plastic section beside the axial force N it bears at that time: with the area below the neutral axis
+A hinge is a section whose moment has reached M_pl,N, that of the wholly plastic section beside its axial force N. With
+the area below the neutral axis
 
     A_t = (A + N / fy) / 2   in tension,   M_pl,N = 2 fy |∫ y dA|  over A_t.
+
+Without hardening a fibre section comes to it in the limit only. Near it 1 - M / M_pl,N goes with κ^-2, and the rotation,
+∫ κ dx over the plastic zone, lacks a share in proportion to (1 - M / M_pl,N)^(1/2) of what it will be when the hinge is
+there. So that root falls to zero in proportion to the load that is still missing, and the hinge's load is where the line
+through the root at `NEAR` and at `FULL` meets zero. With hardening, M passes M_pl,N, and that is the load.
 
 A hinge that grows along its member is one hinge, and so is one at a node where just two member ends meet.
 """
@@ -18,8 +23,10 @@ from fem_reference.frame import Frame
 from fem_reference.paths import Trace
 from scene import Scene
 
-#: Share of M_pl,N at which a section counts as a hinge.
-FULL = 0.9995
+#: Shares of M_pl,N from which the load at which it is reached is found; a section that has come to the second is a hinge.
+NEAR, FULL = 0.995, 0.9992
+#: Share of a path's last rise at which it is as good as level.
+_LEVEL = 0.999
 
 
 @dataclass(frozen=True)
@@ -89,10 +96,7 @@ def hinge_events(frame: Frame, scene: Scene, trace: Trace) -> tuple[HingeEvent, 
         stations = mesh.stations.ravel()[order]
         start += count
         for i in np.flatnonzero((history >= FULL).any(axis=0)):
-            k = int(np.argmax(history[:, i] >= FULL))
-            before = history[max(k - 1, 0), i]
-            part = 1.0 if k == 0 else (FULL - before) / (history[k, i] - before)
-            found.append((max(k - 1, 0) + part * (k > 0), name, int(i), float(stations[i])))
+            found.append((_time_of_hinge(history[:, i], np.array(trace.load)), name, int(i), float(stations[i])))
     events: list[HingeEvent] = []
     zones: dict[str, list[tuple[int, float]]] = {name: [] for name in frame.meshes}
     seen: set[str] = set()
@@ -109,6 +113,28 @@ def hinge_events(frame: Frame, scene: Scene, trace: Trace) -> tuple[HingeEvent, 
         load, displacement = (float(np.interp(time, index, values)) for values in (trace.load, trace.displacement))
         events.append(HingeEvent(name, station, node, load, displacement))
     return tuple(events)
+
+
+def _first_time(values: np.ndarray, level: float) -> float:
+    """Where along a path, in points, ``values`` first come to ``level``."""
+    k = int(np.argmax(values >= level))
+    return k - 1 + float((level - values[k - 1]) / (values[k] - values[k - 1])) if k else 0.0
+
+
+def _time_of_hinge(share: np.ndarray, load: np.ndarray) -> float:
+    """Where along a path, in points, a section with M / M_pl,N = ``share`` becomes a hinge."""
+    if share.max() > 1.0 + 1e-6:
+        return _first_time(share, 1.0)
+    index = np.arange(len(load))
+    near, full = _first_time(share, NEAR), _first_time(share, FULL)
+    here, there = np.interp([near, full], index, load)
+    root_near, root_full = np.sqrt(1.0 - NEAR), np.sqrt(1.0 - FULL)
+    missing = abs(there - here) * root_full / (root_near - root_full)
+    # From there on, while the section stays full, the path's own load. A path may turn level before that much is found.
+    left = (index > full) & (share < FULL)
+    stop = int(np.argmax(left)) if left.any() else len(load)
+    found = np.where((index >= full) & (index < stop), np.abs(load - there), 0.0)
+    return max(full, _first_time(found, min(missing, _LEVEL * found.max())))
 
 
 def _node_at(scene: Scene, name: str, station: float) -> str:

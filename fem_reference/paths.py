@@ -46,7 +46,7 @@ class Trace:
     external, elastic, plastic : list of float
         Work of all loads, energy stored in members and springs, plastic work [J].
     imbalance : float
-        Largest resultant of the out-of-balance forces, over the sum of all loads [-].
+        Largest resultant of the out-of-balance forces, over the largest sum of loads [-].
     stopped : str
         Why the path ends before its programme does; empty when it does not.
     """
@@ -122,7 +122,7 @@ class State:
         self.load = 0.0
         self.response: Response = frame.respond(self.displacement, frame.undeformed())
         self.external = self.plastic = 0.0
-        self.imbalance = 0.0
+        self._out_of_balance = self._all_loads = 0.0
         # Change of displacement and load per unit of what is controlled in the last step, to predict the next.
         self.slope: tuple[np.ndarray, float] | None = None
         self._dead = 0.0
@@ -132,6 +132,11 @@ class State:
     def position(self) -> float:
         """Displacement under control [m]."""
         return float(self.control @ self.displacement)
+
+    @property
+    def imbalance(self) -> float:
+        """Largest resultant of the out-of-balance forces so far, over the largest sum of loads and reactions [-]."""
+        return self._out_of_balance / self._all_loads if self._all_loads else 0.0
 
     def record(self, points: Trace, start: float) -> None:
         """Append this state to ``points``."""
@@ -143,7 +148,7 @@ class State:
         springs = 0.5 * float(self.frame.springs @ self.displacement**2)
         points.elastic.append(self.frame.elastic_energy(self.response) + springs)
         points.plastic.append(self.plastic)
-        points.imbalance = max(points.imbalance, self.imbalance)
+        points.imbalance = self.imbalance
 
     def carry_dead_loads(self) -> None:
         """Apply dead loads and settlements together."""
@@ -197,7 +202,10 @@ class State:
             applied = self._dead * frame.weight + load * frame.pattern
             residual = (applied - response.internal)[free]
             gap = goal - float(c @ d) - e * load
-            answer = self.solver.solve(response.matrices, frame.springs, residual, frame.pattern[free])
+            try:
+                answer = self.solver.solve(response.matrices, frame.springs, residual, frame.pattern[free])
+            except np.linalg.LinAlgError:  # an iterate with a singular tangent: a smaller step may pass it by
+                return False
             rise = (gap - float(c[free] @ answer[:, 0])) / (float(c[free] @ answer[:, 1]) + e)
             change = answer[:, 0] + rise * answer[:, 1]
             if not np.isfinite(rise):
@@ -234,6 +242,6 @@ class State:
         out = np.zeros(frame.size)
         out[self.solver.free] = residual
         pulls = [out[frame.dofs_of(axis)].sum() for axis in (0, 1)]
-        self.imbalance = float(
-            np.hypot(*pulls) / max(np.abs(applied).sum(), np.abs(after[frame.fixed]).max(initial=0.0))
-        )
+        self._out_of_balance = max(self._out_of_balance, float(np.hypot(*pulls)))
+        loads = np.abs(applied).sum() + np.abs(after[frame.fixed]).max(initial=0.0)
+        self._all_loads = max(self._all_loads, float(loads))

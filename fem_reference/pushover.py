@@ -82,7 +82,7 @@ class Pushover:
         Its difference from that of the next coarser model [m].
     energy : Energy
     imbalance : float
-        Largest resultant of the out-of-balance forces, over the sum of all loads [-].
+        Largest resultant of the out-of-balance forces, over the largest sum of loads [-].
     """
 
     method: str
@@ -235,7 +235,7 @@ def _with_errors(fine: tuple[HingeEvent, ...], coarse: tuple[HingeEvent, ...], s
     """``fine`` with the differences of its loads from the nearest hinges of ``coarse``."""
     judged = []
     for event in fine:
-        same = [e for e in coarse if e.member == event.member and e.node == event.node]
+        same = [e for e in coarse if e.node == event.node and (e.node or e.member == event.member)]
         near = min(same, key=lambda e: abs(e.position - event.position), default=None)
         judged.append(event if near is None else replace(event, error_estimate=abs(near.load - event.load) / scale))
     return tuple(judged)

@@ -37,13 +37,16 @@ class BandedSolver:
         self._shape = (2 * self._reach + 1, self.free.size)
         self._slot = (self._reach + row - column) * self.free.size + column
 
-    def solve(self, matrices: np.ndarray, *right: np.ndarray) -> np.ndarray:
-        """Solve K x = b for each of ``right``, K assembled from element ``matrices`` (n, k, k); returns (free, b)."""
+    def solve(self, matrices: np.ndarray, diagonal: np.ndarray, *right: np.ndarray) -> np.ndarray:
+        """Solve K x = b for each of ``right``; returns (free, b).
+
+        K is assembled from element ``matrices`` (n, k, k), with ``diagonal`` (size,) added.
+        """
         entries = matrices.ravel()[self._kept]
         band = np.bincount(self._slot, weights=entries, minlength=self._shape[0] * self._shape[1])
+        band = band.reshape(self._shape)
+        band[self._reach] += diagonal[self.free]
         columns = np.column_stack(right)
         reach = (self._reach, self._reach)
-        answer: np.ndarray = solve_banded(
-            reach, band.reshape(self._shape), columns, overwrite_ab=True, overwrite_b=True, check_finite=False
-        )
+        answer: np.ndarray = solve_banded(reach, band, columns, overwrite_ab=True, overwrite_b=True, check_finite=False)
         return answer

@@ -1,149 +1,247 @@
-"""Equilibrium paths of a frame: own weight first, then a push under displacement control."""
+"""Equilibrium paths of a frame: dead loads first, then a programme of displacements, then perhaps back to zero load.
+
+Each step solves
+
+    F_int(d) = W + λ p,   c · d + e λ = goal
+
+by Newton's method for (d, λ) together. With (c, e) = (control, 0) it prescribes a displacement, so a falling or level
+path is no obstacle; with (0, 1) the load.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from fem_reference.banded import BandedSolver
-from fem_reference.frame import Frame
+from fem_reference.frame import Frame, Response
 
-#: Energy r · K⁻¹ r of the out-of-balance forces r allowed in a converged step, as a share of the work λ p · d: its
+#: Energy r · K⁻¹ r of the out-of-balance forces r allowed in a converged step, as a share of the work done so far: its
 #: root is the relative error of a force. (The forces themselves are no measure: in a very short element they carry
 #: rounding errors that do no work.)
 TOLERANCE = 1e-18
 _MOST_ITERATIONS = 25
 _SMALLEST_CUT = 2.0**-12
+_UNLOADING_STEPS = 20
 
 
 class NotConverged(RuntimeError):
     """No equilibrium was found, even with the smallest step."""
 
 
-def push(
+@dataclass
+class Trace:
+    """A path point by point; k points, the first under dead loads alone.
+
+    Attributes
+    ----------
+    displacement, load : list of float
+        Displacement under control, from the first point [m], and load factor λ.
+    stress : list of (n, 2, 3) float
+        N, M, Q at the quadrature points.
+    element_forces : list of (n, 8) float
+        Forces on the elements' degrees of freedom, in global axes.
+    external, elastic, plastic : list of float
+        Work of all loads, energy stored in members and springs, plastic work [J].
+    imbalance : float
+        Largest resultant of the out-of-balance forces, over the largest sum of loads [-].
+    stopped : str
+        Why the path ends before its programme does; empty when it does not.
+    """
+
+    displacement: list[float] = field(default_factory=list)
+    load: list[float] = field(default_factory=list)
+    stress: list[np.ndarray] = field(default_factory=list)
+    element_forces: list[np.ndarray] = field(default_factory=list)
+    external: list[float] = field(default_factory=list)
+    elastic: list[float] = field(default_factory=list)
+    plastic: list[float] = field(default_factory=list)
+    imbalance: float = 0.0
+    stopped: str = ""
+
+
+def trace(
     frame: Frame,
-    pattern: np.ndarray,
-    distances: np.ndarray,
+    control: np.ndarray,
+    legs: Sequence[np.ndarray],
+    unload: bool = False,
     watch: Callable[[float], None] = lambda share: None,
-) -> tuple[np.ndarray, float]:
-    """Loads λ at which the frame's displacement along ``pattern`` reaches each of ``distances``.
-
-    The displacement at λ = 0, under own weight alone, counts as distance 0. Solves
-
-        F_int(d) = W + λ p,   p · d = p · d₀ + distance
-
-    by Newton's method for (d, λ) together, so a falling or level path is no obstacle.
+) -> tuple[Trace, State]:
+    """The path of ``frame`` through ``legs``, and its state at the end.
 
     Parameters
     ----------
     frame : Frame
-    pattern : (size,) float
-        Unit load pattern p [-].
-    distances : (k,) float
-        Increasing distances along p [m].
+    control : (size,) float
+        Vector c: the displacement under control is c · d.
+    legs : sequence of (k,) float
+        Displacements under control at which points are wanted, leg by leg, from where it is under dead loads [m].
+    unload : bool
+        Whether to go back to λ = 0 at the end.
     watch : callable
         Told the finished share of the path, 0 to 1.
-
-    Returns
-    -------
-    loads : (k,) float
-        λ at each distance [N].
-    imbalance : float
-        Largest force by which the whole frame is out of balance along the push, over the largest λ [-].
 
     Raises
     ------
     NotConverged
-        When a step finds no equilibrium.
+        When the dead loads find no equilibrium. Later on, the path so far is returned.
     """
-    solver = _Newton(frame, pattern)
-    solver.carry_weight()
-    start = float(pattern @ solver.displacement)
-    loads = np.empty(len(distances))
-    imbalance = 0.0
-    for i, distance in enumerate(distances):
-        solver.move_to(start + float(distance))
-        loads[i] = solver.load
-        imbalance = max(imbalance, solver.imbalance)
-        watch((i + 1) / len(distances))
-    return loads, imbalance / float(np.abs(loads).max())
+    state = State(frame, control)
+    state.carry_dead_loads()
+    points = Trace()
+    start = state.position
+    state.record(points, start)
+    total = sum(len(leg) for leg in legs)
+    try:
+        for leg in legs:
+            state.slope = None
+            for distance in leg:
+                state.move_to(start + float(distance))
+                state.record(points, start)
+                watch((len(points.load) - 1) / total)
+        if unload:
+            state.slope = None
+            for load in state.load * np.linspace(1.0, 0.0, _UNLOADING_STEPS + 1)[1:]:
+                state.load_to(float(load))
+                state.record(points, start)
+    except NotConverged as error:
+        points.stopped = str(error)
+    return points, state
 
 
-class _Newton:
-    """State of a frame on its path, and the step to the next point."""
+class State:
+    """A frame on its path, and the step to the next point."""
 
-    def __init__(self, frame: Frame, pattern: np.ndarray) -> None:
+    def __init__(self, frame: Frame, control: np.ndarray) -> None:
         self.frame = frame
-        self.pattern = pattern
+        self.control = control
         self.solver = BandedSolver(frame.dofs, frame.fixed, frame.size)
         self.displacement = np.zeros(frame.size)
-        self.plastic_strain = frame.undeformed()
         self.load = 0.0
-        self.imbalance = 0.0
-        self._translation = _translation(frame, pattern)[self.solver.free]
-        # Change of displacement and load per metre of the push in the last step, to predict the next.
+        self.response: Response = frame.respond(self.displacement, frame.undeformed())
+        self.external = self.plastic = 0.0
+        self._out_of_balance = self._all_loads = 0.0
+        # Change of displacement and load per unit of what is controlled in the last step, to predict the next.
         self.slope: tuple[np.ndarray, float] | None = None
+        self._dead = 0.0
+        self._work = 0.0
 
-    def carry_weight(self) -> None:
-        """Apply the own weight under load control."""
-        weight = self.frame.weight
-        if not weight.any():
+    @property
+    def position(self) -> float:
+        """Displacement under control [m]."""
+        return float(self.control @ self.displacement)
+
+    @property
+    def imbalance(self) -> float:
+        """Largest resultant of the out-of-balance forces so far, over the largest sum of loads and reactions [-]."""
+        return self._out_of_balance / self._all_loads if self._all_loads else 0.0
+
+    def record(self, points: Trace, start: float) -> None:
+        """Append this state to ``points``."""
+        points.displacement.append(self.position - start)
+        points.load.append(self.load)
+        points.stress.append(self.response.stress)
+        points.element_forces.append(self.response.element_forces)
+        points.external.append(self.external)
+        springs = 0.5 * float(self.frame.springs @ self.displacement**2)
+        points.elastic.append(self.frame.elastic_energy(self.response) + springs)
+        points.plastic.append(self.plastic)
+        points.imbalance = self.imbalance
+
+    def carry_dead_loads(self) -> None:
+        """Apply dead loads and settlements together."""
+        if not self.frame.weight.any() and not self.frame.settlement.any():
             return
-        free = self.solver.free
-        d = self.displacement.copy()
-        for _ in range(_MOST_ITERATIONS):
-            internal, matrices, plastic = self.frame.respond(d, self.plastic_strain)
-            residual = (weight - internal)[free]
-            change = self.solver.solve(matrices, residual)[:, 0]
-            if abs(residual @ change) <= TOLERANCE * abs(weight @ d):
-                self.displacement, self.plastic_strain = d, plastic
-                return
-            d[free] += change
-        raise NotConverged("the structure does not carry its own weight")
+        done, share = 0.0, 1.0
+        while done < 1.0:
+            goal = min(1.0, done + share)
+            self._dead = goal
+            if self._step(0.0, np.zeros(self.frame.size), 1.0):
+                done, share = goal, 2.0 * share
+            elif share > _SMALLEST_CUT:
+                share *= 0.5
+            else:
+                raise NotConverged(
+                    f"the structure does not carry its own weight and dead loads beyond {done:.3g} of them"
+                )
+        self.slope = None
 
     def move_to(self, target: float) -> None:
-        """Step to p · d = ``target``, in smaller pieces where need be."""
-        position = float(self.pattern @ self.displacement)
+        """Step to the displacement ``target``, in smaller pieces where need be."""
+        self._advance(self.position, target, self.control, 0.0, "displacement", "m")
+
+    def load_to(self, target: float) -> None:
+        """Step to the load factor ``target``, in smaller pieces where need be."""
+        self._advance(self.load, target, np.zeros(self.frame.size), 1.0, "load factor", "")
+
+    def _advance(self, position: float, target: float, c: np.ndarray, e: float, what: str, unit: str) -> None:
         share = 1.0
         while position != target:
             goal = target if share == 1.0 else position + share * (target - position)
-            if self._step(goal, goal - position):
+            if self._step(goal, c, e):
                 position, share = goal, min(1.0, 2.0 * share)
             elif share > _SMALLEST_CUT:
                 share *= 0.5
                 self.slope = None
             else:
-                raise NotConverged(f"no equilibrium beyond a displacement of {position:.6g} m")
+                raise NotConverged(f"no equilibrium beyond a {what} of {position:.6g} {unit}".rstrip())
 
-    def _step(self, goal: float, distance: float) -> bool:
-        free, p = self.solver.free, self.pattern[self.solver.free]
+    def _step(self, goal: float, c: np.ndarray, e: float) -> bool:
+        """Newton's method to c · d + e λ = ``goal``; whether it converged and was accepted."""
+        frame, free = self.frame, self.solver.free
         d, load = self.displacement.copy(), self.load
+        distance = goal - float(c @ d) - e * load
         if self.slope is not None:
             d += distance * self.slope[0]
             load += distance * self.slope[1]
+        d[frame.fixed] = self._dead * frame.settlement
         for _ in range(_MOST_ITERATIONS):
-            internal, matrices, plastic = self.frame.respond(d, self.plastic_strain)
-            residual = (self.frame.weight + load * self.pattern - internal)[free]
-            gap = goal - float(self.pattern @ d)
-            answer = self.solver.solve(matrices, residual, p)
-            rise = (gap - float(p @ answer[:, 0])) / float(p @ answer[:, 1])
+            response = frame.respond(d, self.response.plastic_strain)
+            applied = self._dead * frame.weight + load * frame.pattern
+            residual = (applied - response.internal)[free]
+            gap = goal - float(c @ d) - e * load
+            try:
+                answer = self.solver.solve(response.matrices, frame.springs, residual, frame.pattern[free])
+            except np.linalg.LinAlgError:  # an iterate with a singular tangent: a smaller step may pass it by
+                return False
+            rise = (gap - float(c[free] @ answer[:, 0])) / (float(c[free] @ answer[:, 1]) + e)
             change = answer[:, 0] + rise * answer[:, 1]
             if not np.isfinite(rise):
                 return False
-            if abs(residual @ change) <= TOLERANCE * abs(load * goal) and abs(gap) <= 1e-9 * abs(goal):
-                self.slope = ((d - self.displacement) / distance, (load - self.load) / distance)
-                self.displacement, self.plastic_strain, self.load = d, plastic, load
-                self.imbalance = abs(float(residual @ self._translation))
+            reactions = float(response.internal[frame.fixed] @ d[frame.fixed])
+            work = max(self._work, abs(float(applied @ d)) + abs(reactions))
+            if abs(residual @ change) <= TOLERANCE * work and abs(gap) <= 1e-9 * max(abs(goal), abs(distance)):
+                self._accept(d, load, distance, response, applied, residual)
+                self._work = work
                 return True
             d[free] += change
             load += rise
         return False
 
-
-def _translation(frame: Frame, pattern: np.ndarray) -> np.ndarray:
-    """Displacements of all nodes by one metre along the force in ``pattern``, (size,)."""
-    node = next(dofs for dofs in frame.node_dofs.values() if pattern[dofs].any())
-    whole = np.zeros(frame.size)
-    whole[frame.dofs[:, [0, 3]]], whole[frame.dofs[:, [1, 4]]] = pattern[node[:2]]
-    return whole
+    def _accept(
+        self,
+        d: np.ndarray,
+        load: float,
+        distance: float,
+        response: Response,
+        applied: np.ndarray,
+        residual: np.ndarray,
+    ) -> None:
+        frame = self.frame
+        moved = d - self.displacement
+        if distance != 0.0:
+            self.slope = (moved / distance, (load - self.load) / distance)
+        # Loads work on what is free, reactions on the settlements: together the trapezoid of both ends of the step.
+        before = self.response.internal
+        after = response.internal
+        self.external += 0.5 * float((before + after) @ moved)
+        self.plastic += frame.plastic_work(self.response, response)
+        self.displacement, self.load, self.response = d, load, response
+        out = np.zeros(frame.size)
+        out[self.solver.free] = residual
+        pulls = [out[frame.dofs_of(axis)].sum() for axis in (0, 1)]
+        self._out_of_balance = max(self._out_of_balance, float(np.hypot(*pulls)))
+        loads = np.abs(applied).sum() + np.abs(after[frame.fixed]).max(initial=0.0)
+        self._all_loads = max(self._all_loads, float(loads))

@@ -1,21 +1,51 @@
-"""The reference answer to a pushover: a curve and how wrong it may be."""
+"""The reference answer to a pushover: a curve, what happens along it, and how wrong each may be."""
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem_reference.frame import build_frame
-from fem_reference.paths import push
+from fem_reference.frame import Frame
+from fem_reference.frame_mesh import build_frame, control_vector
+from fem_reference.hinge_events import HingeEvent, hinge_events
+from fem_reference.member_results import MemberResult, member_results
+from fem_reference.paths import State, Trace, trace
 from scene import Scene
 
-#: Points on the path at which the load is quoted.
+#: Points at which the load is quoted, on the path or, of one that turns, on each leg.
 POINTS = 200
+POINTS_A_LEG = 100
 _COARSEST = (10, 24)
 _MOST_REFINEMENTS = 5
+#: A path is level when its last slope is below this share of its first.
+_LEVEL = 1e-4
+_KINEMATICS = {"small": "small displacements", "p-delta": "P–Δ", "large": "corotational large displacements"}
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Where the work of the loads went, along the path.
+
+    Attributes
+    ----------
+    external : (k,) float
+        Work of all loads and settlements [J].
+    elastic : (k,) float
+        What unloading would give back [J].
+    plastic : (k,) float
+        Plastic work [J].
+    error_estimate : float
+        Largest difference of any of them from the next coarser model, over the largest external work [-].
+    """
+
+    external: np.ndarray
+    elastic: np.ndarray
+    plastic: np.ndarray
+    error_estimate: float
 
 
 @dataclass(frozen=True)
@@ -29,7 +59,7 @@ class Pushover:
     displacement : (k,) float
         Displacement of the pushed node along the push [m], from 0.
     load : (k,) float
-        Force on it along the push [N].
+        Force on it along the push [N]; with proportional loads in the scene, their load factor.
     error_estimate : float
         Largest difference from the curve of the next coarser model, over the largest load [-]. The errors of both
         models fall at least linearly with refinement, so the finer one is nearer to the truth than that. Never less
@@ -40,6 +70,19 @@ class Pushover:
         Fibres a section.
     seconds : float
         Time that all refinements took.
+    hinges : tuple of HingeEvent
+        In the order in which they form.
+    outcome : str
+        How the path ended: what was reached, or at which limit point or mechanism.
+    members : dict[str, MemberResult]
+        Forces along the path, and the state at its end.
+    residual : float
+        Displacement at the end of an unloaded path, or the last displacement of another [m].
+    residual_error : float
+        Its difference from that of the next coarser model [m].
+    energy : Energy
+    imbalance : float
+        Largest resultant of the out-of-balance forces, over the largest sum of loads [-].
     """
 
     method: str
@@ -49,6 +92,13 @@ class Pushover:
     elements: int
     fibres: int
     seconds: float
+    hinges: tuple[HingeEvent, ...]
+    outcome: str
+    members: dict[str, MemberResult]
+    residual: float
+    residual_error: float
+    energy: Energy
+    imbalance: float
 
 
 def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], None] = lambda share: None) -> Pushover:
@@ -65,35 +115,92 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
     Returns
     -------
     Pushover
-        From the finest model; its ``error_estimate`` says whether ``tolerance`` was met within five refinements.
+        From the finest model; its ``error_estimate`` says whether ``tolerance`` was met within five refinements. A path
+        that finds no equilibrium any more ends there, and ``outcome`` says so.
 
     Raises
     ------
+    InputError
+        When the scene has no push.
     NotConverged
-        When no equilibrium is found.
+        When the dead loads find no equilibrium.
     """
     started = time.perf_counter()
     elements, fibres = _COARSEST
-    uniform = np.linspace(0.0, scene.push.distance, POINTS + 1)
-    distances = _resolved(uniform, np.append(0.0, _loads(scene, elements, fibres, uniform[1:], watch)[0]))[1:]
-    coarse, _ = _loads(scene, elements, fibres, distances, watch)
+    legs = _even_legs(scene)
+    first = _solve(scene, elements, fibres, legs, watch)
+    legs = _resolved_legs(scene, legs, first.trace)
+    coarse = _solve(scene, elements, fibres, legs, watch)
     for _ in range(_MOST_REFINEMENTS):
         elements, fibres = 2 * elements, 2 * fibres
-        fine, imbalance = _loads(scene, elements, fibres, distances, watch)
-        error = max(float(np.abs(fine - coarse).max() / np.abs(fine).max()), imbalance)
+        fine = _solve(scene, elements, fibres, legs, watch)
+        error = max(_difference(fine.trace.load, coarse.trace.load), fine.trace.imbalance)
         if error <= tolerance:
             break
-        coarse = fine
+        coarse, last = fine, coarse
+    else:
+        coarse = last
     theories = " and ".join(sorted({m.theory.replace("-", "–").title() for m in scene.members.values()}))
+    path = fine.trace
+    external, elastic, plastic = (np.array(values) for values in (path.external, path.elastic, path.plastic))
     return Pushover(
-        method=f"displacement-based fibre beam elements ({theories}, cubic Hermite), small displacements",
-        displacement=np.append(0.0, distances),
-        load=np.append(0.0, fine),
+        method=f"displacement-based fibre beam elements ({theories}, cubic Hermite), {_KINEMATICS[scene.kinematics]}",
+        displacement=np.array(path.displacement),
+        load=np.array(path.load),
         error_estimate=error,
         elements=elements,
         fibres=fibres,
         seconds=time.perf_counter() - started,
+        hinges=_with_errors(fine.hinges, coarse.hinges, float(np.abs(path.load).max())),
+        outcome=path.stopped or _outcome(scene, path),
+        members=member_results(
+            scene, fine.frame, path, fine.end.displacement, fine.end.response.strain, fine.end.response.plastic_strain
+        ),
+        residual=path.displacement[-1],
+        residual_error=abs(path.displacement[-1] - coarse.trace.displacement[-1]),
+        energy=Energy(external, elastic, plastic, _energy_error(path, coarse.trace)),
+        imbalance=path.imbalance,
     )
+
+
+@dataclass(frozen=True)
+class _Solved:
+    """One model's answer."""
+
+    frame: Frame
+    trace: Trace
+    end: State
+    hinges: tuple[HingeEvent, ...]
+
+
+def _solve(scene: Scene, elements: int, fibres: int, legs: list[np.ndarray], watch: Callable[[float], None]) -> _Solved:
+    frame = build_frame(scene, elements, fibres)
+    control = control_vector(scene, frame.node_dofs, frame.size)
+    path, state = trace(frame, control, legs, scene.push.unload, watch)
+    return _Solved(frame, path, state, hinge_events(frame, scene, path))
+
+
+def _even_legs(scene: Scene) -> list[np.ndarray]:
+    stops = (0.0, *scene.push.stops())
+    points = POINTS if len(stops) == 2 else POINTS_A_LEG
+    return [np.linspace(a, b, points + 1)[1:] for a, b in itertools.pairwise(stops)]
+
+
+def _resolved_legs(scene: Scene, legs: list[np.ndarray], path: Trace) -> list[np.ndarray]:
+    """Legs with points closer where the curve bends, where a first path got through them all."""
+    resolved: list[np.ndarray] = []
+    first = 0
+    stops = (0.0, *scene.push.stops())
+    for start, leg in zip(stops, legs, strict=False):
+        load = np.array(path.load[first : first + len(leg) + 1])
+        first += len(leg)
+        if len(load) <= len(leg):
+            resolved.append(leg)
+            continue
+        sign = np.sign(leg[-1] - start)
+        resolved.append(start + sign * _resolved(sign * (np.append(start, leg) - start), load)[1:])
+        resolved[-1][-1] = leg[-1]
+    return resolved
 
 
 def _resolved(distance: np.ndarray, load: np.ndarray) -> np.ndarray:
@@ -110,10 +217,40 @@ def _resolved(distance: np.ndarray, load: np.ndarray) -> np.ndarray:
     return resolved
 
 
-def _loads(
-    scene: Scene, elements: int, fibres: int, distances: np.ndarray, watch: Callable[[float], None]
-) -> tuple[np.ndarray, float]:
-    frame = build_frame(scene, elements, fibres)
-    pattern = np.zeros(frame.size)
-    pattern[frame.node_dofs[scene.push.node][:2]] = scene.push_direction()
-    return push(frame, pattern, distances, watch)
+def _difference(fine: list[float], coarse: list[float]) -> float:
+    """Largest difference over the largest value, along the part that both have; 1 when one has no more than a start."""
+    both = min(len(fine), len(coarse))
+    a, b = np.array(fine[:both]), np.array(coarse[:both])
+    return float(np.abs(a - b).max() / np.abs(a).max()) if both > 1 else 1.0
+
+
+def _energy_error(fine: Trace, coarse: Trace) -> float:
+    both = min(len(fine.load), len(coarse.load))
+    pairs = ((fine.external, coarse.external), (fine.elastic, coarse.elastic), (fine.plastic, coarse.plastic))
+    worst = max(float(np.abs(np.array(a[:both]) - np.array(b[:both])).max()) for a, b in pairs)
+    return worst / max(map(abs, fine.external))
+
+
+def _with_errors(fine: tuple[HingeEvent, ...], coarse: tuple[HingeEvent, ...], scale: float) -> tuple[HingeEvent, ...]:
+    """``fine`` with the differences of its loads from the nearest hinges of ``coarse``."""
+    judged = []
+    for event in fine:
+        same = [e for e in coarse if e.node == event.node and (e.node or e.member == event.member)]
+        near = min(same, key=lambda e: abs(e.position - event.position), default=None)
+        judged.append(event if near is None else replace(event, error_estimate=abs(near.load - event.load) / scale))
+    return tuple(judged)
+
+
+def _outcome(scene: Scene, path: Trace) -> str:
+    """What a path that ran to its end came to."""
+    load, displacement = np.array(path.load), np.array(path.displacement)
+    if len(scene.push.stops()) == 1 and not scene.push.unload:
+        peak = int(np.argmax(load))
+        slopes = np.diff(load) / np.diff(displacement)
+        if peak < len(load) - 1 and slopes[-1] < -_LEVEL * slopes[0]:
+            return (
+                f"limit point: the load is largest, {load[peak]:.6g}, at a displacement of {displacement[peak]:.6g} m"
+            )
+        if abs(slopes[-1]) <= _LEVEL * slopes[0]:
+            return f"mechanism: the load stays at {load[-1]:.6g}"
+    return "reached the end of its programme"

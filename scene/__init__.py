@@ -15,11 +15,16 @@ so that a fibre's strain is ε = ε₀ - y κ with κ = dθ/dx, and N = ∫σ dA
 joint from a to b are u = extension along x, v = slip along y, θ = rotation of b less rotation of a.
 """
 
-from scene.model import Member, Node, Push, Scene, check
+from scene.actions import Load, Motion, Push
+from scene.checks import check
+from scene.model import HELD, Member, Node, Scene
 from scene.reading import builtin_names, builtin_text, load_scene, parse_scene
 
 __all__ = [
+    "HELD",
+    "Load",
     "Member",
+    "Motion",
     "Node",
     "Push",
     "Scene",

@@ -8,10 +8,24 @@ from typing import Literal
 import msgspec
 
 from capacity import Capacity, InputError, Material, Section, capacity
-from scene.quantities import Acceleration, Length
+from scene.actions import Load, LoadKind, Motion, Push, unit_vector
+from scene.quantities import Acceleration, Length, Mass, RotationalStiffness, Speed, Stiffness
 
-Support = Literal["free", "pinned", "clamped"]
+Support = Literal["free", "pinned", "clamped", "roller-x", "roller-y", "guided-x", "guided-y"]
 Theory = Literal["euler-bernoulli", "timoshenko"]
+Kinematics = Literal["small", "p-delta", "large"]
+MemberEnd = Literal["from", "to"]
+
+#: Which of x, y and rotation each support holds.
+HELD: dict[Support, tuple[bool, bool, bool]] = {
+    "free": (False, False, False),
+    "pinned": (True, True, False),
+    "clamped": (True, True, True),
+    "roller-x": (False, True, False),
+    "roller-y": (True, False, False),
+    "guided-x": (False, True, True),
+    "guided-y": (True, False, True),
+}
 
 
 class Node(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -22,11 +36,29 @@ class Node(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     at : (Length, Length)
         Position x, y [m].
     support : str
-        ``"clamped"`` holds x, y and rotation, ``"pinned"`` x and y, ``"free"`` nothing.
+        A key of `HELD`: ``"clamped"`` holds x, y and rotation, ``"pinned"`` x and y, ``"roller-x"`` is free to move
+        along x and to turn, ``"guided-x"`` slides along x without turning; likewise with y; ``"free"`` holds nothing.
+    spring : (Stiffness, Stiffness, RotationalStiffness), optional
+        Elastic springs to the ground along x, y and in rotation [N/m, N/m, N m/rad].
+    settlement : (Length, Length)
+        How far the support itself moves, before any push or motion [m].
+    mass : Mass
+        Mass of a body fixed to the node [kg].
+    velocity : (Speed, Speed)
+        Velocity of that body when a motion begins [m/s]; the node's own comes of the impact.
     """
 
     at: tuple[Length, Length]
     support: Support = "free"
+    spring: tuple[Stiffness, Stiffness, RotationalStiffness] | None = None
+    settlement: tuple[Length, Length] = (Length(0.0), Length(0.0))
+    mass: Mass = Mass(0.0)
+    velocity: tuple[Speed, Speed] = (Speed(0.0), Speed(0.0))
+
+    @property
+    def held(self) -> tuple[bool, bool, bool]:
+        """Whether the support holds x, y and rotation."""
+        return HELD[self.support]
 
 
 class Member(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -40,6 +72,8 @@ class Member(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     material : Material
     theory : str
         ``"timoshenko"`` with shear flexibility, ``"euler-bernoulli"`` without.
+    releases : tuple of str
+        Ends, ``"from"`` or ``"to"``, that are hinged to their node and so bear no moment.
     """
 
     start: str = msgspec.field(name="from")
@@ -47,23 +81,7 @@ class Member(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     section: Section
     material: Material
     theory: Theory = "timoshenko"
-
-
-class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A displacement-controlled push of one node.
-
-    Attributes
-    ----------
-    node : str
-    direction : (float, float)
-        Direction of the push and of the force, any length but zero.
-    distance : Length
-        How far the node is pushed [m].
-    """
-
-    node: str
-    direction: tuple[float, float]
-    distance: Length
+    releases: tuple[MemberEnd, ...] = ()
 
 
 class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -74,19 +92,41 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title : str
     nodes : dict[str, Node]
     members : dict[str, Member]
-    push : Push
+    pushed : Push, optional
+        Written ``push``; see the property of that name.
+    motion : Motion, optional
+    loads : tuple of Load
     gravity : Acceleration
         Downward acceleration [m/s²].
     criterion : str
         Yield criterion in shear, ``"tresca"`` or ``"von-mises"``.
+    kinematics : str
+        ``"small"`` displacements, ``"p-delta"``: equilibrium where the structure has moved to, rotations small, or
+        ``"large"`` displacements and rotations.
     """
 
     title: str
     nodes: dict[str, Node]
     members: dict[str, Member]
-    push: Push
+    pushed: Push | None = msgspec.field(name="push", default=None)
+    motion: Motion | None = None
+    loads: tuple[Load, ...] = ()
     gravity: Acceleration = Acceleration(9.81)
     criterion: Literal["tresca", "von-mises"] = "von-mises"
+    kinematics: Kinematics = "small"
+
+    @property
+    def push(self) -> Push:
+        """The push.
+
+        Raises
+        ------
+        InputError
+            When the scene has none.
+        """
+        if self.pushed is None:
+            raise InputError("push", "the scene has no push", 'add [push] with node = "…", direction and distance')
+        return self.pushed
 
     def capacity(self, member: str) -> Capacity:
         """Capacities and stiffnesses of a member by name."""
@@ -102,36 +142,13 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def push_direction(self) -> tuple[float, float]:
         """Unit vector of the push."""
-        dx, dy = self.push.direction
-        size = math.hypot(dx, dy)
-        return dx / size, dy / size
+        return unit_vector(self.push.direction)
 
+    def loads_of(self, kind: LoadKind) -> tuple[Load, ...]:
+        """The loads of one kind, in the order of the file."""
+        return tuple(load for load in self.loads if load.kind == kind)
 
-def check(scene: Scene) -> Scene:
-    """``scene`` itself, when it hangs together.
-
-    Raises
-    ------
-    InputError
-        When a name is unknown, a member has no length, nothing is supported, or the push goes nowhere.
-    """
-    known = ", ".join(scene.nodes)
-    if not scene.members:
-        raise InputError("members", "there is no member", "add a table such as [members.beam]")
-    for name, member in scene.members.items():
-        for key, node in (("from", member.start), ("to", member.end)):
-            if node not in scene.nodes:
-                raise InputError(f"members.{name}.{key}", f'there is no node "{node}"', f"the nodes are {known}")
-        if scene.nodes[member.start].at == scene.nodes[member.end].at:
-            raise InputError(f"members.{name}", "its two ends are at the same point", "move one of its nodes")
-    if scene.push.node not in scene.nodes:
-        raise InputError("push.node", f'there is no node "{scene.push.node}"', f"the nodes are {known}")
-    if scene.push.direction == (0.0, 0.0) or not all(map(math.isfinite, scene.push.direction)):
-        raise InputError("push.direction", "it has no direction", "write for example [0, -1]")
-    if scene.push.distance <= 0.0:
-        raise InputError("push.distance", "it must be greater than zero", 'write a length such as "75 mm"')
-    if scene.nodes[scene.push.node].support != "free":
-        raise InputError("push.node", f'node "{scene.push.node}" is supported', "push a free node")
-    if all(node.support == "free" for node in scene.nodes.values()):
-        raise InputError("nodes", "nothing is supported", 'give a node support = "clamped"')
-    return scene
+    def weight_per_length(self, member: str) -> float:
+        """Own weight of a member by name, downwards: ρ A g [N/m]."""
+        m = self.members[member]
+        return m.material.density * m.section.area * self.gravity

@@ -24,3 +24,51 @@ class Acceleration(Quantity):
     """An acceleration [m/s²]."""
 
     kind = "acceleration"
+
+
+class Force(Quantity):
+    """A force [N]."""
+
+    kind = "force"
+
+
+class ForcePerLength(Quantity):
+    """A force per length of member [N/m]."""
+
+    kind = "force per length"
+
+
+class Moment(Quantity):
+    """A moment [N m]."""
+
+    kind = "moment"
+
+
+class Mass(Quantity):
+    """A mass [kg]."""
+
+    kind = "mass"
+
+
+class Speed(Quantity):
+    """A speed [m/s]."""
+
+    kind = "speed"
+
+
+class Duration(Quantity):
+    """A time [s]."""
+
+    kind = "time"
+
+
+class Stiffness(Quantity):
+    """A spring's stiffness [N/m]."""
+
+    kind = "stiffness"
+
+
+class RotationalStiffness(Quantity):
+    """A rotational spring's stiffness [N m/rad]."""
+
+    kind = "rotational stiffness"

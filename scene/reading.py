@@ -10,7 +10,8 @@ from typing import Any
 import msgspec
 
 from capacity import InputError, Material, Section, parse_material, parse_section
-from scene.model import Scene, check
+from scene.checks import check
+from scene.model import Scene
 from scene.quantities import Quantity
 
 
@@ -122,5 +123,6 @@ def _known_keys(place: str) -> list[str]:
     head = place.split(".")[0].split("[")[0]
     if head in fields:
         inner = fields[head]
-        struct = getattr(inner, "__args__", (inner,))[-1]
+        choices = getattr(inner, "__args__", (inner,))
+        struct = next(kind for kind in choices if isinstance(kind, type) and issubclass(kind, msgspec.Struct))
     return [f.encode_name for f in msgspec.structs.fields(struct)]

@@ -58,7 +58,7 @@ def test_hardening_is_in_both_models() -> None:
                 theory="euler-bernoulli",
             )
         },
-        push=scene.push,
+        pushed=scene.push,
         gravity=scene.gravity,
     )
     result = calibrate(hard, 0.01)

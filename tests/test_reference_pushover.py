@@ -8,18 +8,17 @@ import pytest
 from cantilevers import SECTIONS, cantilever, reference_cantilever
 
 from fem_reference import NotConverged, pushover
-from fem_reference.frame import build_frame
-from fem_reference.paths import push
+from fem_reference.frame_mesh import build_frame
+from fem_reference.paths import trace
 from scene import Scene
 
 
 def loads(scene: Scene, elements: int, fibres: int, distances: np.ndarray) -> np.ndarray:
     frame = build_frame(scene, elements, fibres)
-    pattern = np.zeros(frame.size)
-    pattern[frame.node_dofs[scene.push.node][:2]] = scene.push_direction()
-    answer, imbalance = push(frame, pattern, distances)
-    assert imbalance <= 1e-5
-    return answer
+    path, _ = trace(frame, frame.pattern, [distances])
+    assert path.imbalance <= 1e-5
+    assert not path.stopped
+    return np.array(path.load[1:])
 
 
 @pytest.mark.parametrize("name", SECTIONS)
@@ -77,7 +76,7 @@ def test_a_turned_frame_answers_the_same(turn: float) -> None:
         title="turned",
         nodes=nodes,
         members=straight.members,
-        push=type(straight.push)(node="tip", direction=(float(s), float(-c)), distance=straight.push.distance),
+        pushed=type(straight.push)(node="tip", direction=(float(s), float(-c)), distance=straight.push.distance),
         gravity=straight.gravity,
     )
     distances = np.linspace(0.0, 0.03, 11)[1:]

@@ -1,0 +1,144 @@
+"""A scene's members, supports and loads as one `Frame`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fem_reference.frame import NATURAL, Frame
+from fem_reference.kinematics import Chords
+from fem_reference.member_mesh import SHEAR, MemberMesh, mesh_member, turned
+from fem_reference.section_response import FibreSections
+from scene import Load, Scene
+
+
+def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
+    """Mesh every member of ``scene`` with ``elements`` elements and ``fibres`` fibres a section.
+
+    Elements shrink towards a member's ends with the distance, for that is where hinges form.
+    """
+    ends = {name: np.arange(3) + 3 * i for i, name in enumerate(scene.nodes)}
+    meshes = {name: mesh_member(scene.axis(name)[2], elements) for name in scene.members}
+    dofs, size = _number(scene, elements, ends)
+    sections = [m.section.fibres(fibres) for m in scene.members.values()]
+    materials = [m.material for m in scene.members.values()]
+
+    def each(values: list[float]) -> np.ndarray:
+        return np.repeat(np.array(values), elements)[:, None, None]
+
+    strain_matrix = [
+        mesh.strain_matrix[..., NATURAL]
+        if scene.kinematics == "large"
+        else turned(mesh.strain_matrix, *scene.axis(name)[:2])
+        for name, mesh in meshes.items()
+    ]
+    spans = [np.outer(np.diff(mesh.points), scene.axis(name)[:2]) for name, mesh in meshes.items()]
+    fixed, settlement = _prescribed(scene, ends, dofs, size)
+    weight, element_weight = _loads(scene, scene.loads_of("dead"), meshes, dofs, ends, size, own_weight=True)
+    proportional = scene.loads_of("proportional")
+    pattern, element_pattern = _loads(scene, proportional, meshes, dofs, ends, size, own_weight=False)
+    if scene.pushed is not None and not proportional:
+        pattern = control_vector(scene, ends, size)
+    springs = np.zeros(size)
+    for name, node in scene.nodes.items():
+        springs[ends[name]] += node.spring or (0.0, 0.0, 0.0)
+    return Frame(
+        strain_matrix=np.concatenate(strain_matrix),
+        weights=np.concatenate([mesh.weights for mesh in meshes.values()]),
+        dofs=np.concatenate(list(dofs.values())),
+        chords=Chords(np.concatenate(spans)),
+        kinematics=scene.kinematics,
+        sections=FibreSections(
+            y=np.repeat([s.y for s in sections], elements, axis=0)[:, None, :],
+            area=np.repeat([s.area for s in sections], elements, axis=0)[:, None, :],
+            youngs_modulus=each([m.youngs_modulus for m in materials]),
+            yield_stress=each([m.yield_stress for m in materials]),
+            tangent_modulus=each([m.tangent_modulus for m in materials]),
+        ),
+        shear_stiffness=each([scene.capacity(name).GA_s for name in scene.members]).ravel(),
+        springs=springs,
+        fixed=fixed,
+        settlement=settlement,
+        size=size,
+        node_dofs=ends,
+        weight=weight,
+        element_weight=element_weight,
+        element_pattern=element_pattern,
+        pattern=pattern,
+        meshes=meshes,
+    )
+
+
+def control_vector(scene: Scene, node_dofs: dict[str, np.ndarray], size: int) -> np.ndarray:
+    """The vector (size,) whose product with displacements is the displacement along the push."""
+    vector = np.zeros(size)
+    vector[node_dofs[scene.push.node][:2]] = scene.push_direction()
+    return vector
+
+
+def _number(scene: Scene, elements: int, ends: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], int]:
+    """Global degrees of freedom (m, 8) of each member's elements, and their number.
+
+    A released end has a rotation of its own.
+    """
+    size = 3 * len(ends)
+    dofs = {}
+    for name, member in scene.members.items():
+        inner = size + np.arange(3 * (elements - 1)).reshape(-1, 3)
+        size += inner.size
+        node = np.vstack([ends[member.start], inner, ends[member.end]])
+        for end, row in (("from", 0), ("to", -1)):
+            if end in member.releases:
+                node[row, 2] = size
+                size += 1
+        bubbles = size + np.arange(elements)
+        size += 2 * elements
+        dofs[name] = np.column_stack([node[:-1], node[1:], bubbles, bubbles + elements])
+    return dofs, size
+
+
+def _prescribed(
+    scene: Scene, ends: dict[str, np.ndarray], dofs: dict[str, np.ndarray], size: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Degrees of freedom that supports hold or that nothing stiffens, and where they are held."""
+    value = np.full(size, np.nan)
+    for name, node in scene.nodes.items():
+        held = np.array(node.held)
+        value[ends[name][held]] = np.array([*node.settlement, 0.0])[held]
+        # Between hinges only, a node's rotation has no stiffness and no meaning.
+        turns = any(np.any(part[:, [2, 5]] == ends[name][2]) for part in dofs.values())
+        if not turns and not (node.spring or (0.0, 0.0, 0.0))[2]:
+            value[ends[name][2]] = 0.0
+    for name, member in scene.members.items():
+        if member.theory == "euler-bernoulli":
+            value[dofs[name][:, SHEAR]] = 0.0
+    fixed = np.flatnonzero(~np.isnan(value))
+    return fixed, value[fixed]
+
+
+def _loads(
+    scene: Scene,
+    loads: tuple[Load, ...],
+    meshes: dict[str, MemberMesh],
+    dofs: dict[str, np.ndarray],
+    ends: dict[str, np.ndarray],
+    size: int,
+    *,
+    own_weight: bool,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Nodal loads (size,), and the part of it that is spread over elements (n, 8)."""
+    spread = []
+    for name, mesh in meshes.items():
+        c, s, _ = scene.axis(name)
+        qx = sum(float(load.per_length[0]) for load in loads if load.member == name)
+        qy = sum(float(load.per_length[1]) for load in loads if load.member == name)
+        qy -= scene.weight_per_length(name) if own_weight else 0.0
+        spread.append(turned(mesh.spread(c * qx + s * qy, c * qy - s * qx), c, s))
+    elements = np.concatenate(spread)
+    total = np.bincount(np.concatenate(list(dofs.values())).ravel(), weights=elements.ravel(), minlength=size)
+    for load in loads:
+        if load.node is not None:
+            total[ends[load.node]] += (*load.force, load.moment)
+    if own_weight:
+        for name, node in scene.nodes.items():
+            total[ends[name][1]] -= node.mass * scene.gravity
+    return total, elements

@@ -28,10 +28,11 @@ class Errors:
 
 
 def compare(reference: Pushover, push: Push) -> Errors:
-    """Errors of ``push`` at the displacements of ``reference``."""
-    load = np.interp(reference.displacement, push.displacement, push.load)
+    """Errors of ``push`` at the points of ``reference``, whose displacements were the pusher's distances."""
+    points = np.arange(len(reference.load))
+    load = np.interp(points, push.progress, push.load)
     largest = float(np.abs(reference.load).max())
-    early = reference.load <= 0.3 * largest
+    early = points < np.argmax(np.abs(reference.load) > 0.3 * largest)
     return Errors(
         path_max=float(np.abs(load - reference.load).max()) / largest,
         stiffness=_slope(reference.displacement[early], load[early])

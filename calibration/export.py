@@ -66,6 +66,7 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
             "microseconds_per_joint_step": best.push.microseconds_per_joint_step,
         },
         "pareto": [_tried(trial) for trial in result.trials],
+        "failures": [{**settings(failure.model), "reason": failure.reason} for failure in result.failures],
         "target_error": result.target_error,
         "target_met": result.target_met,
         "versions": versions(),

@@ -33,6 +33,10 @@ def print_report(result: Calibration, console: Console) -> None:
     console.print(_capacities(result))
     console.print(_errors(result))
     console.print(_trials(result))
+    if result.failures:
+        console.print(
+            f"{len(result.failures)} more models could not be stepped: {result.failures[0].reason}", style="red"
+        )
 
 
 def _capacities(result: Calibration) -> Table:

@@ -10,7 +10,7 @@ from calibration.planner import candidates
 from capacity import Capacity
 from fem_reference import Pushover, pushover
 from scene import Scene
-from sim import Model, Push, push_over
+from sim import Model, Push, SolverError, push_over
 
 #: The reference must be this many times better than the target, …
 REFERENCE_MARGIN = 5.0
@@ -28,6 +28,14 @@ class Trial:
 
 
 @dataclass(frozen=True)
+class Failure:
+    """A model that could not take a step, and what the solver said."""
+
+    model: Model
+    reason: str
+
+
+@dataclass(frozen=True)
 class Calibration:
     """A calibrated scene.
 
@@ -41,6 +49,8 @@ class Calibration:
     reference : Pushover
     trials : tuple of Trial
         In the order in which they were tried, from cheap to dear.
+    failures : tuple of Failure
+        Models that were tried and broke down.
     best : Trial
         The first that met the target, or else the one with the least error.
     target_error : float
@@ -52,6 +62,7 @@ class Calibration:
     capacity: dict[str, Capacity]
     reference: Pushover
     trials: tuple[Trial, ...]
+    failures: tuple[Failure, ...]
     best: Trial
     target_error: float
 
@@ -89,7 +100,7 @@ def calibrate(
     ValueError
         When ``target_error`` is not between 0 and 1.
     fem_reference.NotConverged, sim.SolverError
-        When the reference, or the models, find no equilibrium.
+        When the reference, or every model, finds no equilibrium.
     """
     if not 0.0 < target_error < 1.0:
         raise ValueError(f"a target error of {target_error:g} is not between 0 and 1")
@@ -99,19 +110,27 @@ def calibrate(
     # The first model in a process also pays for loading the kernels; that is no part of its cost.
     push_over(scene, models[0], reference.displacement)
     trials: list[Trial] = []
+    failures: list[Failure] = []
     for i, model in enumerate(models):
         watch(f"model {i + 1}: {model.rule} {model.joints}, {model.law}", i / len(models))
-        push = push_over(scene, model, reference.displacement)
+        try:
+            push = push_over(scene, model, reference.displacement)
+        except SolverError as error:
+            failures.append(Failure(model, str(error)))
+            continue
         trials.append(Trial(model, push, compare(reference, push)))
         if trials[-1].errors.path_max <= target_error:
             break
     watch("models", 1.0)
+    if not trials:
+        raise SolverError(f"none of {len(failures)} models could be stepped; the last said: {failures[-1].reason}")
     return Calibration(
         name=name or scene.title,
         scene=scene,
         capacity={member: scene.capacity(member) for member in scene.members},
         reference=reference,
         trials=tuple(trials),
+        failures=tuple(failures),
         best=min(trials, key=lambda trial: (trial.errors.path_max > target_error, trial.errors.path_max)),
         target_error=target_error,
     )

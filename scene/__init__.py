@@ -17,13 +17,14 @@ joint from a to b are u = extension along x, v = slip along y, θ = rotation of 
 
 from scene.actions import Load, Motion, Push
 from scene.checks import check
-from scene.model import HELD, Member, Node, Scene
+from scene.model import HELD, Member, MemberEnd, Node, Scene
 from scene.reading import builtin_names, builtin_text, load_scene, parse_scene
 
 __all__ = [
     "HELD",
     "Load",
     "Member",
+    "MemberEnd",
     "Motion",
     "Node",
     "Push",

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import pymunk
 
-from scene import Scene
+from capacity import InputError
+from scene import MemberEnd, Scene
 from sim.joint import DuctileJoint
 from sim.laws import ElasticPlastic, FibreSection, Law
 from sim.rules import RULES, Rule
@@ -72,6 +73,22 @@ class JointPlace:
 
 
 @dataclass(frozen=True)
+class DeadLoad:
+    """A force [N] on a body at a point of it, and a moment [N m]; both keep their direction."""
+
+    body: pymunk.Body
+    force: tuple[float, float]
+    moment: float
+    point: tuple[float, float]
+
+    def act(self, share: float) -> None:
+        """Act with a share of the load on the body in the next step."""
+        force = (share * self.force[0], share * self.force[1])
+        self.body.apply_force_at_world_point(force, self.body.local_to_world(self.point))
+        self.body.torque += share * self.moment
+
+
+@dataclass(frozen=True)
 class Assembly:
     """A scene as pymunk bodies and joints, ready to step.
 
@@ -85,6 +102,8 @@ class Assembly:
     places : tuple of JointPlace
     pusher : pymunk.Body
         Kinematic body that pushes the scene's node through the structure's last joint.
+    dead_loads : tuple of DeadLoad
+        To be made to act before each step.
     """
 
     space: pymunk.Space
@@ -92,6 +111,13 @@ class Assembly:
     pieces: tuple[Piece, ...]
     places: tuple[JointPlace, ...]
     pusher: pymunk.Body
+    dead_loads: tuple[DeadLoad, ...]
+
+    def step(self, dt: float, share: float = 1.0) -> None:
+        """Step the space by ``dt`` [s], with a share of the dead loads acting."""
+        for load in self.dead_loads:
+            load.act(share)
+        self.space.step(dt)
 
     def pushed_point(self) -> tuple[float, float]:
         """Where the pushed node is now [m]."""
@@ -132,7 +158,12 @@ def assemble(scene: Scene, model: Model) -> Assembly:
     ------
     ValueError
         When ``model`` names an unknown rule or law.
+    InputError
+        When the scene has no push, or proportional loads, for which there is no rigid-body model yet.
     """
+    if scene.loads_of("proportional"):
+        cure = "push the node itself, or use `fem_reference` alone"
+        raise InputError("loads", "rigid bodies cannot be pushed by a pattern of proportional loads", cure)
     if model.rule not in RULES:
         raise ValueError(f'there is no rule "{model.rule}"; the rules are {", ".join(RULES)}')
     rule = RULES[model.rule](model.joints)
@@ -149,7 +180,8 @@ def assemble(scene: Scene, model: Model) -> Assembly:
     pusher = builder.add_pusher(RIGID * stiffest)
     structure = Structure(builder.joints)
     space.add(*structure.joints)
-    return Assembly(space, structure, tuple(builder.pieces), tuple(builder.places), pusher)
+    pieces, places, loads = tuple(builder.pieces), tuple(builder.places), tuple(builder.dead_loads())
+    return Assembly(space, structure, pieces, places, pusher, loads)
 
 
 class _Builder:
@@ -168,23 +200,28 @@ class _Builder:
         self._make_node_bodies()
 
     def _make_node_bodies(self) -> None:
-        """A body for each node where members meet, of the first bit of each."""
-        for node, names in self.meeting.items():
-            if len(names) < 2:
+        """A body for each node where members meet, or that is more than a clamp or a hinge at a member's end.
+
+        It is made of the first bit of each member there, and of the node's own mass.
+        """
+        for name, members in self.meeting.items():
+            node = self.scene.nodes[name]
+            plain = node.support in ("free", "clamped", "pinned") and node.spring is None and node.mass == 0.0
+            if len(members) == 1 and plain and node.settlement == (0.0, 0.0):
                 continue
-            x, y = self.scene.nodes[node].at
-            parts = []
-            for name in names:
-                c, s, length = self.scene.axis(name)
+            x, y = node.at
+            parts = [(float(node.mass), 0.0, x, y)]
+            for member in members:
+                c, s, length = self.scene.axis(member)
                 first = length * (self.rule.points[1] - self.rule.points[0]) * _NODE_SHARE
-                side = 1.0 if self.scene.members[name].start == node else -1.0
-                mass, moment = self._inertia(name, first)
+                side = 1.0 if self.scene.members[member].start == name else -1.0
+                mass, moment = self._inertia(member, first)
                 parts.append((mass, moment, x + 0.5 * side * c * first, y + 0.5 * side * s * first))
             mass = sum(part[0] for part in parts)
             cx = sum(m * px for m, _, px, _ in parts) / mass
             cy = sum(m * py for m, _, _, py in parts) / mass
             moment = sum(i + m * ((px - cx) ** 2 + (py - cy) ** 2) for m, i, px, py in parts)
-            self.node_body[node] = self._add_body(mass, moment, cx, cy, 0.0)
+            self.node_body[name] = self._add_body(mass, moment, cx, cy, 0.0)
 
     def _inertia(self, name: str, length: float) -> tuple[float, float]:
         """Mass [kg] and moment of inertia [kg m²] of ``length`` of a member about its own centre."""
@@ -229,7 +266,8 @@ class _Builder:
             if a is None or b is None:
                 continue
             position, share = float(self.rule.points[i] * length), float(self.rule.weights[i] * length)
-            pinned = (i == 0 and self._is_hinge(member.start)) or (b is chain[-1] and self._is_hinge(member.end))
+            first, last = i == 0, i == len(chain) - 2
+            pinned = (first and self._is_hinge(name, "from")) or (last and self._is_hinge(name, "to"))
             law = joint_law(self.scene, name, share, self.model, pinned)
             at = (x0 + c * position, y0 + s * position)
             self.joints.append(DuctileJoint(a, b, at, law, direction=math.atan2(s, c), turn=0.5))
@@ -241,32 +279,64 @@ class _Builder:
             return self.node_body[node]
         return None if self.scene.nodes[node].support == "free" else self.space.static_body
 
-    def _is_hinge(self, node: str) -> bool:
-        return node not in self.node_body and self.scene.nodes[node].support == "pinned"
+    def _is_hinge(self, name: str, end: MemberEnd) -> bool:
+        """Whether a member's end bears no moment."""
+        member = self.scene.members[name]
+        node = member.start if end == "from" else member.end
+        return end in member.releases or (node not in self.node_body and self.scene.nodes[node].support == "pinned")
 
     def support(self) -> None:
-        """Rigid springs to the ground for the node bodies that are supported."""
-        for node, body in self.node_body.items():
-            kind = self.scene.nodes[node].support
-            if kind == "free":
-                continue
-            names = self.meeting[node]
-            k = RIGID * max(self.scene.capacity(m).EA / self.scene.axis(m)[2] for m in names)
-            turn = RIGID * max(self.scene.capacity(m).EI / self.scene.axis(m)[2] for m in names)
-            law = ElasticPlastic((k, k, turn if kind == "clamped" else 0.0), (math.inf, math.inf, math.inf))
-            self.joints.append(
-                DuctileJoint(self.space.static_body, body, self.scene.nodes[node].at, law, direction=0.0)
-            )
+        """Rigid springs to the ground for the node bodies that are supported, and the nodes' own springs."""
+        for name, body in self.node_body.items():
+            node, members = self.scene.nodes[name], self.meeting[name]
+            if any(node.held):
+                k = RIGID * max(self.scene.capacity(m).EA / self.scene.axis(m)[2] for m in members)
+                turn = RIGID * max(self.scene.capacity(m).EI / self.scene.axis(m)[2] for m in members)
+                x, y, rotation = (stiffness * held for stiffness, held in zip((k, k, turn), node.held, strict=True))
+                joint = self._to_ground(name, body, (x, y, rotation))
+                # A support that settles pulls its node along: its spring is as long as the settlement at first.
+                joint.geometry[0] += node.settlement[0]
+                joint.geometry[1] += node.settlement[1]
+            if node.spring is not None:
+                x, y, rotation = map(float, node.spring)
+                self._to_ground(name, body, (x, y, rotation))
+
+    def _to_ground(self, node: str, body: pymunk.Body, stiffness: tuple[float, float, float]) -> DuctileJoint:
+        law = ElasticPlastic(stiffness, (math.inf, math.inf, math.inf))
+        joint = DuctileJoint(self.space.static_body, body, self.scene.nodes[node].at, law, direction=0.0)
+        self.joints.append(joint)
+        return joint
+
+    def dead_loads(self) -> list[DeadLoad]:
+        """The scene's dead loads, on the bodies that they act on."""
+        loads: list[DeadLoad] = []
+        for load in self.scene.loads_of("dead"):
+            if load.member is not None:
+                for piece in self.pieces:
+                    if piece.member == load.member:
+                        span = piece.end - piece.start
+                        force = (load.per_length[0] * span, load.per_length[1] * span)
+                        loads.append(DeadLoad(piece.body, force, 0.0, (0.0, 0.0)))
+            elif load.node is not None:
+                body = self._carrier(load.node)
+                point = body.world_to_local(self.scene.nodes[load.node].at)
+                fx, fy = load.force
+                loads.append(DeadLoad(body, (fx, fy), float(load.moment), (point.x, point.y)))
+        return loads
+
+    def _carrier(self, node: str) -> pymunk.Body:
+        """The body that a node belongs to: its own, or the piece that ends there."""
+        if node in self.node_body:
+            return self.node_body[node]
+        name = self.meeting[node][0]
+        own = [piece.body for piece in self.pieces if piece.member == name]
+        return own[0] if self.scene.members[name].start == node else own[-1]
 
     def add_pusher(self, stiffness: float) -> pymunk.Body:
         """Kinematic body at the pushed node, tied to it along the push only."""
         node = self.scene.push.node
         x, y = self.scene.nodes[node].at
-        pushed = self.node_body.get(node) or next(
-            piece.body
-            for piece in (self.pieces if self.scene.members[self.meeting[node][0]].start == node else self.pieces[::-1])
-            if piece.member == self.meeting[node][0]
-        )
+        pushed = self._carrier(node)
         pusher = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
         pusher.position = (x, y)
         self.space.add(pusher)

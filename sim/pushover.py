@@ -20,6 +20,8 @@ DURATION = 4.0
 _EASE = 0.1
 #: Step while a scene settles under its own weight [s]; long, for the longer it is the more it damps.
 SETTLING_STEP = 1.0 / 60.0
+# Weight and dead loads grow over so many steps: applied at once they would bear down with twice their size.
+_LOADING_STEPS = 120
 _MOST_SETTLING_STEPS = 10_000
 
 
@@ -33,6 +35,8 @@ class Push:
         Displacement of the pushed node along the push after each step [m], from 0.
     load : (k,) float
         Force on it along the push [N].
+    progress : (k,) float
+        How far along the given distances the pusher had come: 2.5 is halfway between the third and the fourth [-].
     bodies, joints : int
         Dynamic bodies, and joints of the members.
     steps : int
@@ -51,6 +55,7 @@ class Push:
 
     displacement: np.ndarray
     load: np.ndarray
+    progress: np.ndarray
     bodies: int
     joints: int
     steps: int
@@ -86,7 +91,8 @@ def push_over(
     scene : Scene
     model : Model
     distances : (k,) float
-        Increasing distances of the pusher, from 0 [m]; each gets an equal share of `DURATION`, the first ones more.
+        Distances of the pusher one after the other, from 0 [m]; each gets an equal share of the time, the first
+        ones a larger one; every way from one turn to the next takes `DURATION`.
     watch : callable
         Told the finished share of the push, 0 to 1.
 
@@ -100,10 +106,12 @@ def push_over(
         When a step cannot be taken.
     """
     assembly, origin = _settled(scene, model)
-    space, structure, pusher = assembly.space, assembly.structure, assembly.pusher
+    structure, pusher = assembly.structure, assembly.pusher
     direction = np.array(scene.push_direction())
-    steps = max(1, round(DURATION / model.dt))
-    travel = np.interp(_eased(steps), np.linspace(0.0, 1.0, len(distances)), distances)
+    turns = 1 + int(np.count_nonzero(np.diff(np.sign(np.diff(distances)))))
+    steps = max(1, round(turns * DURATION / model.dt))
+    progress = _eased(steps) * (len(distances) - 1)
+    travel = np.interp(progress, np.arange(len(distances)), distances)
     gap = np.empty(steps)
     force = np.empty(steps)
     newton_before = structure.newton_steps
@@ -114,7 +122,7 @@ def push_over(
         speed = (travel[k + 1] - travel[k]) / model.dt
         pusher.position = tuple(origin + (2.0 * travel[k] - travel[k + 1]) * direction)
         pusher.velocity = (speed * direction[0], speed * direction[1])
-        space.step(model.dt)
+        assembly.step(model.dt)
         gap[k], force[k] = structure.deformation[-1, 0], structure.force[-1, 0]
         if k % 64 == 0:
             watch(k / steps)
@@ -122,6 +130,7 @@ def push_over(
     return Push(
         displacement=np.append(0.0, travel[1:] + gap),
         load=np.append(0.0, -force),
+        progress=progress,
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
         joints=len(assembly.places),
         steps=steps,
@@ -145,15 +154,18 @@ def _settled(scene: Scene, model: Model) -> tuple[Assembly, np.ndarray]:
     """The scene at rest under its own weight, with the pusher at the pushed node; and where that is."""
     assembly = assemble(scene, model)
     place = np.array(scene.nodes[scene.push.node].at)
-    if scene.gravity == 0.0:
+    settles = any(node.settlement != (0.0, 0.0) for node in scene.nodes.values())
+    if scene.gravity == 0.0 and not assembly.dead_loads and not settles:
         return assembly, place
     structure, last = assembly.structure, len(assembly.structure.joints) - 1
     spring = structure.joints[last].law
     structure.change_law(last, ElasticPlastic((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
-    for _ in range(_MOST_SETTLING_STEPS):
-        assembly.space.step(SETTLING_STEP)
+    for k in range(_MOST_SETTLING_STEPS):
+        share = min(1.0, (k + 1) / _LOADING_STEPS)
+        assembly.space.gravity = (0.0, -share * scene.gravity)
+        assembly.step(SETTLING_STEP, share)
         speed = max(body.velocity.length for body in structure.bodies)
-        if speed * SETTLING_STEP < 1e-9 * scene.push.distance:
+        if share == 1.0 and speed * SETTLING_STEP < 1e-9 * scene.push.way():
             break
     else:
         raise SolverError("the scene does not come to rest under its own weight; support it, or make it stronger")

@@ -146,6 +146,11 @@ class DuctileJoint(pymunk.Constraint):
         return (0.0, 0.0, 0.0) if self.broken else self._row("force")
 
     @property
+    def utilisation(self) -> tuple[float, float, float]:
+        """|N| / N_max, |Q| / Q_max and |M| / M_max in the last step."""
+        return self._row("utilisation")
+
+    @property
     def deformation(self) -> tuple[float, float, float]:
         """Extension [m], slip [m] and rotation [rad] at the end of the last step."""
         return self._row("deformation")

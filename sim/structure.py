@@ -200,6 +200,14 @@ class Structure:
         return self._result[:, at.RESULT_FORCE : at.RESULT_FORCE + 3].copy()
 
     @property
+    def utilisation(self) -> np.ndarray:
+        """|N| / N_max, |Q| / Q_max and |M| / M_max of each joint in the last step, (n, 3); 0 without a limit."""
+        capacities = np.array([joint.law.capacities() for joint in self.joints])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.abs(self.force) / capacities
+        return np.where((capacities > 0.0) & self.active[:, None], share, 0.0)
+
+    @property
     def plastic_deformation(self) -> np.ndarray:
         """Plastic elongation, shortening, slip and rotation, each summed without sign, (n, 4) [m, m, m, rad]."""
         return self._result[:, at.RESULT_PLASTIC : at.RESULT_PLASTIC + 4].copy()

@@ -51,6 +51,12 @@ deformations = st.tuples(st.floats(-5e-4, 5e-4), st.floats(-5e-4, 5e-4), st.floa
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_capacities_are_those_of_the_section(law: Law) -> None:
+    expected = (CAPACITY.N_max, CAPACITY.Q_max, CAPACITY.M_max)
+    assert law.capacities() == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_first_tangent_is_the_elastic_one(law: Law) -> None:
     a = law.elastic_tangent()
     expected = np.array([[a[0], a[1], a[2]], [a[1], a[3], a[4]], [a[2], a[4], a[5]]])

@@ -152,6 +152,11 @@ def test_perfectly_plastic_forces_stay_within_their_caps() -> None:
     for _ in range(100):
         space.step(1 / 240)
         assert np.all(np.abs(structure.force) <= np.array([500.0, 300.0, 40.0]) * (1.0 + 1e-6))
+        assert structure.utilisation.max() <= 1.0 + 1e-6
+    assert structure.utilisation.max(axis=0) == pytest.approx(
+        np.abs(structure.force / [500.0, 300.0, 40.0]).max(axis=0)
+    )
+    assert structure.joints[0].utilisation == tuple(structure.utilisation[0].tolist())
     assert structure.dissipated.sum() > 0.0
     assert structure.dissipated.min() >= 0.0
 

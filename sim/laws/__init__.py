@@ -25,6 +25,9 @@ class Law(Protocol):
     respond_address: int
     commit_address: int
 
+    def capacities(self) -> tuple[float, float, float]:
+        """N_max [N], Q_max [N] and M_max [N m], each when it acts alone."""
+
     def parameters(self) -> np.ndarray:
         """Parameters as they lie in memory."""
 

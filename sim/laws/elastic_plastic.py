@@ -63,6 +63,10 @@ class ElasticPlastic:
     respond_address = respond.address
     commit_address = commit.address
 
+    def capacities(self) -> tuple[float, float, float]:
+        """N_max [N], Q_max [N] and M_max [N m]."""
+        return self.capacity
+
     def parameters(self) -> np.ndarray:
         """Parameters as they lie in memory."""
         return np.array([*self.stiffness, *self.capacity])

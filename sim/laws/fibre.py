@@ -113,6 +113,15 @@ class FibreSection:
     respond_address = respond.address
     commit_address = commit.address
 
+    def capacities(self) -> tuple[float, float, float]:
+        """N_max [N], Q_max [N] and M_max [N m], each when it acts alone, at first full yield."""
+        order = np.argsort(self.y)
+        # The plastic centroid: the fibre at which half of the area is passed, or between two.
+        passed = np.cumsum(self.area[order])
+        middle = float(np.interp(0.5 * passed[-1], passed - 0.5 * self.area[order], self.y[order]))
+        moment = self.yield_stress * float(self.area @ np.abs(self.y - middle))
+        return self.yield_stress * float(self.area.sum()), self.shear_capacity, moment
+
     def parameters(self) -> np.ndarray:
         """Parameters as they lie in memory."""
         n = len(self.y)

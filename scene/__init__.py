@@ -15,7 +15,7 @@ so that a fibre's strain is ε = ε₀ - y κ with κ = dθ/dx, and N = ∫σ dA
 joint from a to b are u = extension along x, v = slip along y, θ = rotation of b less rotation of a.
 """
 
-from scene.actions import Load, Motion, Push
+from scene.actions import Load, LoadKind, Motion, Push
 from scene.checks import check
 from scene.model import HELD, Member, MemberEnd, Node, Scene
 from scene.reading import builtin_names, builtin_text, load_scene, parse_scene
@@ -23,6 +23,7 @@ from scene.reading import builtin_names, builtin_text, load_scene, parse_scene
 __all__ = [
     "HELD",
     "Load",
+    "LoadKind",
     "Member",
     "MemberEnd",
     "Motion",

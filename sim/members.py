@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import pymunk
 
-from capacity import InputError
-from scene import MemberEnd, Scene
+from scene import LoadKind, MemberEnd, Scene
 from sim.joint import DuctileJoint
 from sim.laws import ElasticPlastic, FibreSection, Law
 from sim.rules import RULES, Rule
@@ -73,7 +72,7 @@ class JointPlace:
 
 
 @dataclass(frozen=True)
-class DeadLoad:
+class BodyLoad:
     """A force [N] on a body at a point of it, and a moment [N m]; both keep their direction."""
 
     body: pymunk.Body
@@ -102,8 +101,10 @@ class Assembly:
     places : tuple of JointPlace
     pusher : pymunk.Body
         Kinematic body that pushes the scene's node through the structure's last joint.
-    dead_loads : tuple of DeadLoad
+    dead_loads : tuple of BodyLoad
         To be made to act before each step.
+    pattern : tuple of BodyLoad
+        Proportional loads at a load factor of 1.
     """
 
     space: pymunk.Space
@@ -111,7 +112,8 @@ class Assembly:
     pieces: tuple[Piece, ...]
     places: tuple[JointPlace, ...]
     pusher: pymunk.Body
-    dead_loads: tuple[DeadLoad, ...]
+    dead_loads: tuple[BodyLoad, ...]
+    pattern: tuple[BodyLoad, ...]
 
     def step(self, dt: float, share: float = 1.0) -> None:
         """Step the space by ``dt`` [s], with a share of the dead loads acting."""
@@ -159,11 +161,8 @@ def assemble(scene: Scene, model: Model) -> Assembly:
     ValueError
         When ``model`` names an unknown rule or law.
     InputError
-        When the scene has no push, or proportional loads, for which there is no rigid-body model yet.
+        When the scene has no push.
     """
-    if scene.loads_of("proportional"):
-        cure = "push the node itself, or use `fem_reference` alone"
-        raise InputError("loads", "rigid bodies cannot be pushed by a pattern of proportional loads", cure)
     if model.rule not in RULES:
         raise ValueError(f'there is no rule "{model.rule}"; the rules are {", ".join(RULES)}')
     rule = RULES[model.rule](model.joints)
@@ -180,8 +179,15 @@ def assemble(scene: Scene, model: Model) -> Assembly:
     pusher = builder.add_pusher(RIGID * stiffest)
     structure = Structure(builder.joints)
     space.add(*structure.joints)
-    pieces, places, loads = tuple(builder.pieces), tuple(builder.places), tuple(builder.dead_loads())
-    return Assembly(space, structure, pieces, places, pusher, loads)
+    return Assembly(
+        space=space,
+        structure=structure,
+        pieces=tuple(builder.pieces),
+        places=tuple(builder.places),
+        pusher=pusher,
+        dead_loads=tuple(builder.loads("dead")),
+        pattern=tuple(builder.loads("proportional")),
+    )
 
 
 class _Builder:
@@ -307,21 +313,21 @@ class _Builder:
         self.joints.append(joint)
         return joint
 
-    def dead_loads(self) -> list[DeadLoad]:
-        """The scene's dead loads, on the bodies that they act on."""
-        loads: list[DeadLoad] = []
-        for load in self.scene.loads_of("dead"):
+    def loads(self, kind: LoadKind) -> list[BodyLoad]:
+        """The scene's loads of one kind, on the bodies that they act on."""
+        loads: list[BodyLoad] = []
+        for load in self.scene.loads_of(kind):
             if load.member is not None:
                 for piece in self.pieces:
                     if piece.member == load.member:
                         span = piece.end - piece.start
                         force = (load.per_length[0] * span, load.per_length[1] * span)
-                        loads.append(DeadLoad(piece.body, force, 0.0, (0.0, 0.0)))
+                        loads.append(BodyLoad(piece.body, force, 0.0, (0.0, 0.0)))
             elif load.node is not None:
                 body = self._carrier(load.node)
                 point = body.world_to_local(self.scene.nodes[load.node].at)
                 fx, fy = load.force
-                loads.append(DeadLoad(body, (fx, fy), float(load.moment), (point.x, point.y)))
+                loads.append(BodyLoad(body, (fx, fy), float(load.moment), (point.x, point.y)))
         return loads
 
     def _carrier(self, node: str) -> pymunk.Body:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -106,30 +107,20 @@ def push_over(
         When a step cannot be taken.
     """
     assembly, origin = _settled(scene, model)
-    structure, pusher = assembly.structure, assembly.pusher
+    structure = assembly.structure
     direction = np.array(scene.push_direction())
     turns = 1 + int(np.count_nonzero(np.diff(np.sign(np.diff(distances)))))
     steps = max(1, round(turns * DURATION / model.dt))
     progress = _eased(steps) * (len(distances) - 1)
     travel = np.interp(progress, np.arange(len(distances)), distances)
-    gap = np.empty(steps)
-    force = np.empty(steps)
     newton_before = structure.newton_steps
     started = time.perf_counter()
-    for k in range(steps):
-        # Chipmunk moves bodies first and solves for the velocities of the next move: the pusher is put one move back,
-        # so that it stands at travel[k] when the forces are sought that hold at travel[k + 1].
-        speed = (travel[k + 1] - travel[k]) / model.dt
-        pusher.position = tuple(origin + (2.0 * travel[k] - travel[k + 1]) * direction)
-        pusher.velocity = (speed * direction[0], speed * direction[1])
-        assembly.step(model.dt)
-        gap[k], force[k] = structure.deformation[-1, 0], structure.force[-1, 0]
-        if k % 64 == 0:
-            watch(k / steps)
+    drive = _by_pattern if assembly.pattern else _by_pusher
+    displacement, load = drive(assembly, origin, direction, travel, model.dt, watch)
     seconds = time.perf_counter() - started
     return Push(
-        displacement=np.append(0.0, travel[1:] + gap),
-        load=np.append(0.0, -force),
+        displacement=np.append(0.0, displacement),
+        load=np.append(0.0, load),
         progress=progress,
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
         joints=len(assembly.places),
@@ -140,6 +131,90 @@ def push_over(
         unconverged=structure.unconverged,
         dissipated=float(structure.dissipated.sum()),
     )
+
+
+def _by_pusher(
+    assembly: Assembly,
+    origin: np.ndarray,
+    direction: np.ndarray,
+    travel: np.ndarray,
+    dt: float,
+    watch: Callable[[float], None],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Push the node itself; displacement and force after each step."""
+    structure, pusher, steps = assembly.structure, assembly.pusher, len(travel) - 1
+    gap, force = np.empty(steps), np.empty(steps)
+    for k in range(steps):
+        # Chipmunk moves bodies first and solves for the velocities of the next move: the pusher is put one move back,
+        # so that it stands at travel[k] when the forces are sought that hold at travel[k + 1].
+        speed = (travel[k + 1] - travel[k]) / dt
+        pusher.position = tuple(origin + (2.0 * travel[k] - travel[k + 1]) * direction)
+        pusher.velocity = (speed * direction[0], speed * direction[1])
+        assembly.step(dt)
+        gap[k], force[k] = structure.deformation[-1, 0], structure.force[-1, 0]
+        if k % 64 == 0:
+            watch(k / steps)
+    return travel[1:] + gap, -force
+
+
+def _by_pattern(
+    assembly: Assembly,
+    origin: np.ndarray,
+    direction: np.ndarray,
+    travel: np.ndarray,
+    dt: float,
+    watch: Callable[[float], None],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Drive the proportional loads so that the node goes its way; its displacement and the load factor after each step.
+
+    What is prescribed is the displacement that the loads work on. How much of it takes the node a metre on is known
+    from the step before.
+    """
+    structure, steps = assembly.structure, len(travel) - 1
+    index = {body: i for i, body in enumerate(structure.bodies)}
+    last = structure.joints[-1]
+    structure.change_law(len(structure.joints) - 1, ElasticPlastic((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    stiffness = max(joint.law.elastic_tangent()[0] for joint in structure.joints[: len(assembly.places)])
+    size = sum(load.force[0] ** 2 + load.force[1] ** 2 for load in assembly.pattern)
+    size += sum(load.moment**2 for load in assembly.pattern)
+    displacement, factor = np.empty(steps), np.empty(steps)
+    ratio: float | None = None
+    for k in range(steps):
+        pattern = _pattern(assembly, index, dt)
+        here = float((_ahead(last.b, last.geometry[2:4], dt) - origin) @ direction)
+        # The first step only finds the ratio.
+        gap = 1e-6 * size**0.5 * travel[-1] if ratio is None else ratio * (travel[k + 1] - here)
+        structure.drive(pattern, stiffness / size, gap)
+        assembly.step(dt)
+        velocities = np.array([(*body.velocity, body.angular_velocity) for body in structure.bodies])
+        there = float((_ahead(last.b, last.geometry[2:4], dt) - origin) @ direction)
+        if there != here:
+            ratio = dt * float(np.sum(pattern * velocities)) / (there - here)
+        displacement[k], factor[k] = there, structure.load_factor
+        if k % 64 == 0:
+            watch(k / steps)
+    return displacement, factor
+
+
+def _ahead(body: pymunk.Body, anchor: Sequence[float], dt: float) -> np.ndarray:
+    """Where a point of a body will be when the body has moved for ``dt`` [m]."""
+    angle = body.angle + dt * body.angular_velocity
+    c, s = math.cos(angle), math.sin(angle)
+    x = body.position.x + dt * body.velocity.x + c * anchor[0] - s * anchor[1]
+    y = body.position.y + dt * body.velocity.y + s * anchor[0] + c * anchor[1]
+    return np.array([x, y])
+
+
+def _pattern(assembly: Assembly, index: dict[pymunk.Body, int], dt: float) -> np.ndarray:
+    """Forces and moments of the proportional loads about the bodies' centres, where these will be after the move."""
+    pattern = np.zeros((len(index), 3))
+    for load in assembly.pattern:
+        (fx, fy), (px, py) = load.force, load.point
+        angle = load.body.angle + dt * load.body.angular_velocity
+        c, s = math.cos(angle), math.sin(angle)
+        moment = load.moment + (c * px - s * py) * fy - (s * px + c * py) * fx
+        pattern[index[load.body]] += fx, fy, moment
+    return pattern
 
 
 def _eased(steps: int) -> np.ndarray:

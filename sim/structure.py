@@ -118,6 +118,8 @@ class Structure:
             at.LOWER_BLOCKS: np.zeros((below, 9)),
             at.SCALED_BLOCKS: np.zeros((below, 9)),
             at.RESULT: self._result,
+            at.PATTERN: np.zeros((len(self.bodies), 3)),
+            at.IMAGE: np.zeros((len(self.bodies), 3)),
             at.BODY_KEYS: keys,
             at.BODY_VALUES: values,
         }
@@ -188,6 +190,28 @@ class Structure:
         self._parameters[first:last] = values
         self._arrays[at.STIFFNESS][joint] = law.elastic_tangent()
         self.joints[joint].law = law
+
+    def drive(self, pattern: np.ndarray, stiffness: float, gap: float) -> None:
+        """Drive a load pattern in the next step, by a spring between the displacement it works on and a wanted one.
+
+        Parameters
+        ----------
+        pattern : (bodies, 3) float
+            Force x, y [N] and moment [N m] on each of `bodies` for a load factor of 1.
+        stiffness : float
+            Load factor over displacement [1/m, when the displacement is in N m].
+        gap : float
+            Wanted displacement at the end of the step, less the present one, Σ pattern · movement [N m].
+        """
+        self._arrays[at.PATTERN][:] = pattern
+        self._settings[at.SPREAD_STIFFNESS] = stiffness
+        self._settings[at.SPREAD_GAP] = gap
+        self._control[at.SPREAD] = 1
+
+    @property
+    def load_factor(self) -> float:
+        """Load factor of the driven pattern in the last step [-]."""
+        return float(self._settings[at.SPREAD_IMPULSE] / self._settings[at.STEP])
 
     @property
     def deformation(self) -> np.ndarray:

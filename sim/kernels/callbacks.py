@@ -50,6 +50,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     n, bodies = t[at.JOINTS], t[at.BODIES]
     settings = floats(t[at.SETTINGS], at.SETTINGS_WORDS)
     settings[at.STEP] = h
+    settings[at.SPREAD_IMPULSE] = 0.0
     t[at.FRESH] = 1
     table(t[at.IMPULSE], n, 3)[:, :] = 0.0
     floats(t[at.SCALE], n)[:] = 1.0
@@ -156,6 +157,9 @@ def solve(c):  # type: ignore[no-untyped-def]
             table(t[at.DIAGONAL], moving, 9),
             table(t[at.LOWER_BLOCKS], m, 9),
             table(t[at.SCALED_BLOCKS], m, 9),
+            t[at.SPREAD] == 1,
+            table(t[at.PATTERN], bodies, 3),
+            table(t[at.IMAGE], bodies, 3),
             settings[at.TOLERANCE],
             predicting,
         )

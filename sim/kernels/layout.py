@@ -14,9 +14,9 @@ NOTICE, KEY = 11, 12
 # Contacts of this step, room for them, those there was no room for, length of the hash table; whether overlap has
 # been taken out in this step.
 CONTACTS, ROOM, MISSED, HASH_LENGTH, PUSHED_APART = 13, 14, 15, 16, 17
-# Whether any joint has a limit.
-BREAKABLE = 18
-_FIRST_ADDRESS = 19
+# Whether any joint has a limit; whether a load pattern acts.
+BREAKABLE, SPREAD = 18, 19
+_FIRST_ADDRESS = 20
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -56,12 +56,15 @@ _FIRST_ADDRESS = 19
     OPERATOR,  # (2 room, 2 room)
     CONTACT_VELOCITY,  # (2 room,)
     CONTACT_CHANGE,  # (2 room,)
-) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 38)
-CONTROL_WORDS = _FIRST_ADDRESS + 38
+    PATTERN,  # (bodies, 3): forces of the load pattern for a load factor of 1
+    IMAGE,  # (bodies, 3): H⁻¹ of it
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 40)
+CONTROL_WORDS = _FIRST_ADDRESS + 40
 
-# Settings (float64).
+# Settings (float64); the last three are those of the load pattern's spring, see `spread`.
 STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL = 0, 1, 2, 3, 4
-SETTINGS_WORDS = 5
+SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 5, 6, 7
+SETTINGS_WORDS = 8
 
 # Geometry of a joint: anchor on a and on b (from their centres of gravity, body coordinates), rest angle of the
 # joint's frame on a and on b, share α of b's rotation in the frame, cosine and sine of the two rest angles.

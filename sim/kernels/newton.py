@@ -25,6 +25,14 @@ from sim.chipmunk import BODY_WORDS, MASS, MASS_INVERSE, MOMENT, MOMENT_INVERSE
 from sim.kernels.blocks import assemble, factorise, substitute
 from sim.kernels.kinematics import rates
 from sim.kernels.layout import BETA, DELTA, STEP, TANGENT
+from sim.kernels.spread import (
+    add_spread,
+    advance_spread,
+    along,
+    lightness_of,
+    spread_correction,
+    spread_residual,
+)
 from sim.memory import call_law, floats
 
 MOST_NEWTON_STEPS = 40
@@ -198,6 +206,9 @@ def iterate(  # type: ignore[no-untyped-def]
     diagonal,
     lower,
     scaled,
+    spread,
+    pattern,
+    image,
     tolerance,
     predicting,
 ):
@@ -224,6 +235,11 @@ def iterate(  # type: ignore[no-untyped-def]
         residual,
         predicting,
     )
+    spring, spring_light, spring_slope = 0.0, 0.0, 0.0
+    if spread:
+        spring = spread_residual(moving, settings, pattern, velocity)
+        spring_light = lightness_of(moving, body_at, pattern)
+        error += spring_light * spring * spring
     motion = motion_scale(moving, body_at, velocity)
     converged = not predicting and error <= tolerance * (size + motion)
     best, steps = error, 0
@@ -232,12 +248,23 @@ def iterate(  # type: ignore[no-untyped-def]
         assemble(n, moving, joint_bodies, body_at, joint_slot, factor, response, jacobian, diagonal, lower)
         factorise(moving, column_start, column_rows, targets, diagonal, lower, scaled)
         gather(n, moving, joint_bodies, jacobian, residual, solution)
+        if spread:
+            add_spread(moving, pattern, spring, solution)
         substitute(moving, 0, column_start, column_rows, diagonal, scaled, solution)
-        start = linearise(n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope)
+        start = 0.0
+        if spread:
+            rate, c = spread_correction(
+                moving, settings, pattern, column_start, column_rows, diagonal, scaled, solution, image
+            )
+            spring_slope = spring - c * rate
+            start = spring * rate
+        start += linearise(n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope)
         share, low, high, fall_low, fall_high = 1.0, 0.0, 1.0, start, 0.0
         step_length = 1.0
         for search in range(MOST_SEARCHES):
             advance(n, moving, step_length, joint_bodies, body_at, jacobian, slope, impulse, velocity)
+            if spread:
+                advance_spread(moving, step_length * spring_slope, body_at, pattern, settings, velocity)
             error, size = respond(
                 n,
                 joint_bodies,
@@ -255,11 +282,16 @@ def iterate(  # type: ignore[no-untyped-def]
                 residual,
                 False,
             )
+            if spread:
+                spring = spread_residual(moving, settings, pattern, velocity)
+                error += spring_light * spring * spring
             converged = error <= tolerance * (size + motion)
             if converged or predicting:
                 break
             # Along the step the energy is convex: where it rises too steeply, its least value lies further back.
             fall = descent(n, moving, joint_bodies, jacobian, residual, solution)
+            if spread:
+                fall += spring * along(moving, pattern, solution)
             if search == 0:
                 if fall >= -0.5 * start:
                     break
@@ -275,6 +307,9 @@ def iterate(  # type: ignore[no-untyped-def]
                 # the next step can follow it; before it the same step would be tried again.
                 if fall > 0.0:
                     advance(n, moving, high - share, joint_bodies, body_at, jacobian, slope, impulse, velocity)
+                    if spread:
+                        advance_spread(moving, (high - share) * spring_slope, body_at, pattern, settings, velocity)
+                        spring = spread_residual(moving, settings, pattern, velocity)
                     error, size = respond(
                         n,
                         joint_bodies,

@@ -37,7 +37,7 @@ class Push:
     load : (k,) float
         Force on it along the push [N].
     progress : (k,) float
-        How far along the given distances the pusher had come: 2.5 is halfway between the third and the fourth [-].
+        How far along the given distances the node had come: 2.5 is halfway between the third and the fourth [-].
     bodies, joints : int
         Dynamic bodies, and joints of the members.
     steps : int
@@ -118,10 +118,14 @@ def push_over(
     drive = _by_pattern if assembly.pattern else _by_pusher
     displacement, load = drive(assembly, origin, direction, travel, model.dt, watch)
     seconds = time.perf_counter() - started
+    if turns == 1:  # where the node was, not where it was wanted; on a way that turns that is not one place
+        progress = np.interp(displacement, distances, np.arange(len(distances)))
+    else:
+        progress = progress[1:]
     return Push(
         displacement=np.append(0.0, displacement),
         load=np.append(0.0, load),
-        progress=progress,
+        progress=np.append(0.0, progress),
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
         joints=len(assembly.places),
         steps=steps,
@@ -165,32 +169,35 @@ def _by_pattern(
     dt: float,
     watch: Callable[[float], None],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Drive the proportional loads so that the node goes its way; its displacement and the load factor after each step.
+    """Drive the proportional loads so that the node goes its way; its displacement and the load factor at each step.
 
-    What is prescribed is the displacement that the loads work on. How much of it takes the node a metre on is known
-    from the step before.
+    What is prescribed is the displacement w that the loads work on, for which the solver's energy stays convex. With y
+    the velocities that a unit impulse of the pattern p gives, and g the node's displacement over the bodies', the node
+    goes on by g·y / p·y for a unit of w.
     """
     structure, steps = assembly.structure, len(travel) - 1
     index = {body: i for i, body in enumerate(structure.bodies)}
     last = structure.joints[-1]
+    node, anchor = last.b, last.geometry[2:4]
     structure.change_law(len(structure.joints) - 1, ElasticPlastic((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
     stiffness = max(joint.law.elastic_tangent()[0] for joint in structure.joints[: len(assembly.places)])
-    size = sum(load.force[0] ** 2 + load.force[1] ** 2 for load in assembly.pattern)
-    size += sum(load.moment**2 for load in assembly.pattern)
+    size = sum(load.force[0] ** 2 + load.force[1] ** 2 + load.moment**2 for load in assembly.pattern)
     displacement, factor = np.empty(steps), np.empty(steps)
-    ratio: float | None = None
+    ratio = 0.0
     for k in range(steps):
         pattern = _pattern(assembly, index, dt)
-        here = float((_ahead(last.b, last.geometry[2:4], dt) - origin) @ direction)
-        # The first step only finds the ratio.
-        gap = 1e-6 * size**0.5 * travel[-1] if ratio is None else ratio * (travel[k + 1] - here)
-        structure.drive(pattern, stiffness / size, gap)
+        arm = _ahead(node, anchor, dt) - _ahead(node, (0.0, 0.0), dt)
+        probe = np.array([*direction, arm[0] * direction[1] - arm[1] * direction[0]])
+        here = float((_ahead(node, anchor, dt) - origin) @ direction)
+        # The first step, without a way to go, finds the ratio.
+        structure.drive(pattern, stiffness / size, ratio * (travel[k + 1] - here) if k else 1e-9 * size**0.5)
         assembly.step(dt)
-        velocities = np.array([(*body.velocity, body.angular_velocity) for body in structure.bodies])
-        there = float((_ahead(last.b, last.geometry[2:4], dt) - origin) @ direction)
-        if there != here:
-            ratio = dt * float(np.sum(pattern * velocities)) / (there - here)
-        displacement[k], factor[k] = there, structure.load_factor
+        response = structure.pattern_response
+        along_node = float(probe @ response[index[node]])
+        if along_node > 0.0:
+            ratio = float(np.sum(pattern * response)) / along_node
+        displacement[k] = (_ahead(node, anchor, dt) - origin) @ direction
+        factor[k] = structure.load_factor
         if k % 64 == 0:
             watch(k / steps)
     return displacement, factor

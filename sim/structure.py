@@ -209,6 +209,11 @@ class Structure:
         self._control[at.SPREAD] = 1
 
     @property
+    def pattern_response(self) -> np.ndarray:
+        """Change of the bodies' velocities for a unit impulse of the driven pattern, joints included, (bodies, 3)."""
+        return self._arrays[at.IMAGE].copy()
+
+    @property
     def load_factor(self) -> float:
         """Load factor of the driven pattern in the last step [-]."""
         return float(self._settings[at.SPREAD_IMPULSE] / self._settings[at.STEP])

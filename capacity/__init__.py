@@ -7,10 +7,11 @@
 """
 
 from capacity.errors import InputError
+from capacity.fibres import Fibres
 from capacity.materials import Material, parse_material
 from capacity.resultants import Capacity, capacity
 from capacity.section_text import parse_section
-from capacity.sections import Fibres, Section
+from capacity.sections import Section
 from capacity.yield_criteria import criterion_name, shear_ratio
 
 __all__ = [

@@ -19,10 +19,12 @@ class Piece:
     ----------
     section : Section
     at : (float, float)
-        Where its centroid lies [m].
+        Where the origin of its drawing lies: the lower left corner of most shapes, the centre of a circle, the back of
+        a channel's web at mid-height (`shapes`) [m].
     angle : float
-        Turned counter-clockwise about its centroid [rad]; mirrored first, x → -x, if `mirrored`.
+        Turned counter-clockwise about that origin [rad].
     mirrored : bool
+        Mirrored first, x → -x.
     material : Material, optional
         What it is made of, when it is not what the whole is made of.
     hole : bool
@@ -40,7 +42,8 @@ class Piece:
         """The parts of the section, in place."""
         section = self.section.mirrored() if self.mirrored else self.section
         section = section.rotated(self.angle)
-        moved = [part.moved(lambda outline: outline.shifted(*self.at)) for part in section.parts]
+        dx, dy = self.at[0] + section.centroid[0], self.at[1] + section.centroid[1]
+        moved = [part.moved(lambda outline: outline.shifted(dx, dy)) for part in section.parts]
         return [replace(part, material=part.material or self.material) for part in moved]
 
 

@@ -214,6 +214,9 @@ class Outline:
         above : float or (k,) float
             One height or several [m]; the result has shape (6,) or (k, 6).
         """
+        if np.ndim(above) == 0 and above == -math.inf:
+            whole: np.ndarray = self._edge_moments.sum(axis=0)
+            return whole
         heights = np.atleast_1d(np.asarray(above, dtype=float))
         first, last = self.ends[0][:, 1], self.ends[1][:, 1]
         wholly = np.minimum(first, last)[None, :] > heights[:, None]

@@ -62,7 +62,8 @@ def parse_section(text: str, place: str = "section") -> Section:
         radius), ``"T 150x150x7.1x10.7 mm"``, ``"L 100x75x8 mm"`` (h × b × t, root and toe radius; a standard size
         without radii is the rolled one); ``"polygon 0,0 100,0 100,60 0,60 hole 20,20 40,20 40,40 mm"``; a name of the
         catalogue (``"IPE 300"``); a path of a mesh or a DXF drawing; or several of these, joined by `` + `` and
-        `` - ``, each followed by any of ``at x,y mm`` (its centroid), ``rotated 90 deg``, ``mirrored``, ``of S355``.
+        `` - ``, each followed by any of ``at x,y mm`` (the origin of its drawing, see `shapes`), ``rotated 90 deg``,
+        ``mirrored``, ``of S355``.
     place : str
         Where the text stands, for messages.
 

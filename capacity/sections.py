@@ -183,19 +183,24 @@ class Section:
         return min(self.elastic_moduli)
 
     @cached_property
+    def _plastic(self) -> tuple[float, float]:
+        half = 0.5 * self.area
+        y, above = 0.0, self.outline.moments(0.0)
+        if abs(above[0] - half) > 1e-14 * self.area:  # else a symmetric section, at once
+            y = self.outline.height_of(half)
+            above = self.outline.moments(y)
+        # The first moment of the whole about its centroid is zero, so both halves give the same moment.
+        return y, float(2.0 * (above[2] - y * above[0]) + y * self.area)
+
+    @property
     def plastic_centroid(self) -> float:
         """Height of the line that halves the area, from the centroid [m]."""
-        half = 0.5 * self.area
-        if abs(self.outline.moments(0.0)[0] - half) <= 1e-14 * self.area:  # a symmetric section, at once
-            return 0.0
-        return self.outline.height_of(half)
+        return self._plastic[0]
 
-    @cached_property
+    @property
     def plastic_modulus(self) -> float:
         """Plastic modulus W_pl = ∫|y - y_pc| dA [m³]."""
-        area, _, first = self.outline.moments(self.plastic_centroid)[:3]
-        # The first moment of the whole about its centroid is zero, so both halves give the same moment.
-        return float(2.0 * (first - self.plastic_centroid * area) + self.plastic_centroid * self.area)
+        return self._plastic[1]
 
     @property
     def shape_factor(self) -> float:
@@ -257,7 +262,7 @@ class Section:
         return answer
 
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(14)
 
 
 def shear_stiffness(bending: Outline, shear: Outline) -> float:

@@ -61,7 +61,8 @@ def parse_section(text: str, place: str = "section") -> Section:
         unequal flanges (upper, lower), ``"U 200x75x8.5x11.5x11.5x6 mm slope 8%"`` (h × b × tw × tf, root and toe
         radius), ``"T 150x150x7.1x10.7 mm"``, ``"L 100x75x8 mm"`` (h × b × t, root and toe radius; a standard size
         without radii is the rolled one); ``"polygon 0,0 100,0 100,60 0,60 hole 20,20 40,20 40,40 mm"``; a name of the
-        catalogue (``"IPE 300"``); a path of a mesh or a DXF drawing; or several of these, joined by `` + `` and
+        catalogue (``"IPE 300"``); a path of a mesh or a DXF drawing, with its unit (``"part.msh mm"``; a mesh without
+        one is in m, a drawing in its own); or several of these, joined by `` + `` and
         `` - ``, each followed by any of ``at x,y mm`` (the origin of its drawing, see `shapes`), ``rotated 90 deg``,
         ``mirrored``, ``of S355``.
     place : str
@@ -112,8 +113,9 @@ def _single(text: str, place: str) -> Section:
     named = catalogue.entries().get(catalogue.key(text))
     if named is not None:
         return named.section()
-    if text.lower().endswith(_FILES):
-        return _from_file(Path(text), place)
+    file = re.fullmatch(r"\s*(.*?\.\w+)(?:\s+([A-Za-z]+))?\s*", text)
+    if file and file[1].lower().endswith(_FILES):
+        return _from_file(Path(file[1]), length_unit(file[2], place) if file[2] else None, place)
     if text.split()[:1] == ["polygon"]:
         return _polygon(text, place)
     match = _SIZES.match(text)
@@ -165,16 +167,16 @@ def _polygon(text: str, place: str) -> Section:
         raise InputError(place, f'"{text}": {error}', example) from error
 
 
-def _from_file(path: Path, place: str) -> Section:
-    if not path.exists():
+def _from_file(path: Path, scale: float | None, place: str) -> Section:
+    if not path.is_file():
         raise InputError(place, f'there is no file "{path}"', "write the path of a mesh or a DXF drawing")
     if path.suffix.lower() == ".dxf":
         from capacity.drawing_section import section_from_dxf
 
-        return section_from_dxf(path, place=place)
+        return section_from_dxf(path, scale, place)
     from capacity.mesh_section import section_from_mesh
 
-    return section_from_mesh(path, place=place)
+    return section_from_mesh(path, 1.0 if scale is None else scale, place)
 
 
 def _point(text: str, whole: str, place: str) -> tuple[float, float]:

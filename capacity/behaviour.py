@@ -1,8 +1,8 @@
 """Capacities from a wanted behaviour: the other way round from sections and materials.
 
 The rules are those of Nikula, Mikkola and Björk, *Breakable elastic-plastic constraint for rigid body simulation*: a
-largest elastic deformation of a joint of known stiffness, a share of the capacity that own weight shall use, and a bridge
-that a heaviest vehicle decides.
+largest elastic deformation of a joint of known stiffness, a share of the capacity that own weight shall use, and a
+bridge that a heaviest vehicle decides.
 """
 
 from __future__ import annotations
@@ -288,7 +288,7 @@ def lightest_for_bridge(
     for section in sections:
         demand = bridge.M_max(material.density * gravity * section.area)
         Q, M = tau * section.wall_area, material.yield_stress * section.plastic_modulus
-        shears, bends = Q > bridge.vehicle_weight, demand.value <= M
+        shears, bends = bridge.vehicle_weight < Q, demand.value <= M
         if shears and bends:
             decided = {"neither": "nothing: it is the lightest there is", "Q": "Q_max", "M": "M_max", "both": "both"}
             return Choice(section, M, Q, demand, bridge.Q_max(), decided[failed])

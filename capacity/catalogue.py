@@ -100,13 +100,12 @@ def _i_sections() -> Iterator[Entry]:
 def _channels() -> Iterator[Entry]:
     for row in _rows("channels.csv"):
         d = _numbers(row)
-        sizes = [d[symbol] * _MM for symbol in ("h", "b", "tw", "tf", "r1", "r2")]
-        taper = (d["slope"], d["x_tf"] * _MM)
+        h, b, tw, tf, r1, r2, x_tf = (d[symbol] * _MM for symbol in ("h", "b", "tw", "tf", "r1", "r2", "x_tf"))
         yield Entry(
             row["name"],
             row["name"].split()[0],
             d,
-            partial(shapes.tapered_channel, *sizes, *taper),
+            partial(shapes.tapered_channel, h, b, tw, tf, r1, r2, d["slope"], x_tf),
         )
 
 
@@ -151,6 +150,5 @@ def _hollow() -> Iterator[Entry]:
 def _w_shapes() -> Iterator[Entry]:
     for row in _rows("w_shapes.csv"):
         d = _numbers(row)
-        sizes = [d[symbol] * _INCH for symbol in ("d", "bf", "tw", "tf")]
-        root = (d["k_des"] - d["tf"]) * _INCH
-        yield Entry(row["name"], "W", d, partial(shapes.i_section, *sizes, root))
+        h, b, tw, tf, k = (d[symbol] * _INCH for symbol in ("d", "bf", "tw", "tf", "k_des"))
+        yield Entry(row["name"], "W", d, partial(shapes.i_section, h, b, tw, tf, k - tf))

@@ -130,7 +130,9 @@ def _nested(loops: list[Outline]) -> Outline:
     whole: Outline | None = None
     for i, loop in enumerate(upright):
         inside = regions[i].representative_point()
-        depth = sum(j != i and region.area > regions[i].area and region.contains(inside) for j, region in enumerate(regions))
+        depth = sum(
+            j != i and region.area > regions[i].area and region.contains(inside) for j, region in enumerate(regions)
+        )
         turned = loop if depth % 2 == 0 else loop.reversed()
         whole = turned if whole is None else whole + turned
     assert whole is not None  # the caller has at least one loop

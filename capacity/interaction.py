@@ -49,9 +49,7 @@ class FacetSurface:
     Q_max: float
     error: tuple[float, float]
 
-    def value(
-        self, N: float | np.ndarray, Q: float | np.ndarray, M: float | np.ndarray
-    ) -> np.ndarray:
+    def value(self, N: float | np.ndarray, Q: float | np.ndarray, M: float | np.ndarray) -> np.ndarray:
         """Share of the capacity that (N, Q, M) uses [N, N, N m]: 1 on the surface, less inside; shape of N, Q, M.
 
         The λ at which (N, Q, M) / λ lies on the facet, λ f + w √(λ² - q²) = a N + b M, greatest over the facets.
@@ -63,7 +61,8 @@ class FacetSurface:
         root = np.sqrt(np.maximum(c * c - (f * f - w * w) * q * q, 0.0))
         below = c * f + w * root
         share: np.ndarray = np.where(below > 0.0, (c * c + (w * q) ** 2) / np.where(below > 0.0, below, 1.0), q)
-        return share.max(axis=-1)
+        greatest: np.ndarray = share.max(axis=-1)
+        return greatest
 
 
 class Interaction:
@@ -225,9 +224,11 @@ def _shear_regions(part: Part) -> list[Outline]:
             (cx, cy), r = walls.point[i].tolist(), float(walls.radius[i])
             start, sweep = float(walls.start[i]), float(walls.sweep[i])
             outer, inner = r + 0.5 * t, r - 0.5 * t
-            ring = Outline.from_edges(
-                arc(cx, cy, outer, start, sweep) + arc(cx, cy, inner, start + sweep, -sweep)
-            ) + _radial(cx, cy, start + sweep, outer, inner) + _radial(cx, cy, start, inner, outer)
+            ring = (
+                Outline.from_edges(arc(cx, cy, outer, start, sweep) + arc(cx, cy, inner, start + sweep, -sweep))
+                + _radial(cx, cy, start + sweep, outer, inner)
+                + _radial(cx, cy, start, inner, outer)
+            )
             region.append(ring)
     return region
 

@@ -68,9 +68,7 @@ class Material:
         """Stress–strain law: the table it was given, or elastic up to fy and then E_t."""
         if self.curve is not None:
             return self.curve
-        return StressStrain.bilinear(
-            self.youngs_modulus, self.yield_stress, self.tangent_modulus, self.ultimate_strain
-        )
+        return StressStrain.bilinear(self.youngs_modulus, self.yield_stress, self.tangent_modulus, self.ultimate_strain)
 
 
 # Key in a material text: field, quantity.

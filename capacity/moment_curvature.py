@@ -1,8 +1,8 @@
 """Moment and curvature at any axial force, loading exactly and through any history.
 
 Plane sections: ε(y) = ε0 + κ y, N = ∫σ dA, M = ∫σ y dA, y up from the centroid, so a positive moment pulls the upper
-face. A law of straight pieces is a sum of ramps, σ = E ε - Σ ΔE_j [(ε - ε_j)₊ - (-ε - ε_j)₊], and the integral of a ramp
-over a section is an area and a first moment above a height: exact for any outline.
+face. A law of straight pieces is a sum of ramps, σ = E ε - Σ ΔE_j [(ε - ε_j)₊ - (-ε - ε_j)₊], and the integral of a
+ramp over a section is an area and a first moment above a height: exact for any outline.
 """
 
 from __future__ import annotations

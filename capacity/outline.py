@@ -67,9 +67,9 @@ class Outline:
 
     def __add__(self, other: Outline) -> Outline:
         """Both boundaries together; they must not cross."""
-        return Outline(*(np.concatenate(pair) for pair in zip(self._arrays(), other._arrays(), strict=True)))
+        return Outline(*map(np.concatenate, zip(self._arrays(), other._arrays(), strict=True)))
 
-    def _arrays(self) -> tuple[np.ndarray, ...]:
+    def _arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         return self.point, self.span, self.radius, self.start, self.sweep, self.weight
 
     def shifted(self, dx: float, dy: float) -> Outline:
@@ -169,7 +169,9 @@ class Outline:
     def stops(self) -> np.ndarray:
         """Heights between which the chord length is smooth, ascending [m]."""
         y = np.sort(self.ends[0][:, 1])
-        return y[np.concatenate([[True], np.diff(y) > 1e-12 * max(y[-1] - y[0], 1e-300)])]
+        apart: np.ndarray = np.append(True, np.diff(y) > 1e-12 * (y[-1] - y[0]))
+        distinct: np.ndarray = y[apart]
+        return distinct
 
     def _integrals(self, edge: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Contributions of edges ``edge`` between parameters ``low`` and ``high`` to the moments, (m, 6)."""

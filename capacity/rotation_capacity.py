@@ -1,7 +1,7 @@
 """How far a hinge turns and how far it stretches until it breaks.
 
-A hinge of length L_h in which curvature is even breaks when a fibre reaches the ultimate strain. Its plastic rotation is
-then (κ_u - M_u / EI) L_h, and a bar that is stretched to ε_u keeps the plastic elongation (ε_u - σ_u / E) L_h.
+A hinge of length L_h in which curvature is even breaks when a fibre reaches the ultimate strain. Its plastic rotation
+is then (κ_u - M_u / EI) L_h, and a bar that is stretched to ε_u keeps the plastic elongation (ε_u - σ_u / E) L_h.
 """
 
 from __future__ import annotations

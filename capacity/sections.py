@@ -92,8 +92,8 @@ class Section:
     ) -> Section:
         """A section from pieces drawn anywhere; the origin moves to the centroid of their area."""
         parts = tuple(parts)
-        area, sx, sy = sum(part.outline.moments()[:3] for part in parts)
-        x, y = float(sx / area), float(sy / area)
+        area, sx, sy = np.sum([part.outline.moments()[:3] for part in parts], axis=0).tolist()
+        x, y = sx / area, sy / area
         centred = tuple(part.moved(lambda outline: outline.shifted(-x, -y)) for part in parts)
         return Section(name, centred, (x, y), curved_wall_shear_area, plastic_torsion_modulus)
 

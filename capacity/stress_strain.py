@@ -72,7 +72,8 @@ class StressStrain:
         """σ at ``strain`` on first loading [Pa]; shape of ``strain``."""
         size = np.abs(np.asarray(strain, dtype=float))
         over = np.maximum(size[..., None] - self.breaks, 0.0)
-        return np.sign(strain) * (self.slopes[0] * size - over @ self.drops)
+        stress: np.ndarray = np.sign(strain) * (self.slopes[0] * size - over @ self.drops)
+        return stress
 
     def respond(self, strain: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Stress, tangent and new slips for any history: elastic–perfectly plastic elements in parallel (Besseling).

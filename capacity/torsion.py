@@ -1,4 +1,4 @@
-"""Plastic torsion: twice the volume of the sand heap over a section (Nadai), with level roofs over its hollows (Sadowsky).
+"""Plastic torsion by the sand heap over a section (Nadai), with level roofs over its hollows (Sadowsky).
 
     T_max = 2 τ_y V,   V = ∫ A(s) ds,
 

@@ -35,32 +35,44 @@ def cut_fibres(outline: Outline, centre: float, count: int) -> Fibres:
     Each half of the area, above and below ``centre``, is cut into strips; each strip becomes two fibres of half its
     area at its own radius of gyration from its own centroid (the two-point rule that is exact to the second moment).
     Strips end where the width jumps, at the flanges of an I section for one, and grow thinner towards ``centre``: the
-    last fibres to yield decide how a moment approaches M_p.
+    last fibres to yield decide how a moment approaches M_p. An odd count gives the topmost strip a third fibre.
 
     Raises
     ------
     ValueError
-        When ``count`` is not a positive multiple of 4.
+        When ``count`` is below 4, two for each half.
     """
-    if count < 4 or count % 4:
-        raise ValueError(f"{count} fibres: the number must be a positive multiple of 4")
-    above = outline.moments(_strip_cuts(outline, centre, count // 4))
+    if count < 4:
+        raise ValueError(f"{count} fibres: four are the least that keep area, inertia and plastic modulus")
+    upper = (count // 2 + 1) // 2
+    above = outline.moments(_strip_cuts(outline, centre, count // 2 - upper, upper))
     strips = above[:-1] - above[1:]
-    strips = strips[strips[:, 0] > 0.0]
     area, first, second = strips[:, 0], strips[:, 2], strips[:, 5]
     middle = first / area
-    reach = np.sqrt(np.maximum(second / area - middle**2, 0.0))
-    y = np.column_stack([middle - reach, middle + reach]).ravel()
-    return Fibres(y=y, area=np.repeat(0.5 * area, 2))
+    spread = np.maximum(second / area - middle**2, 0.0)
+    extra = np.zeros(len(area))
+    if count % 2:
+        extra[-1] = 1.0 / 3.0  # the share of the topmost strip that goes to its own centroid
+    # Inwards and outwards of the strip's centroid; inwards not beyond `centre`, which would change the plastic modulus.
+    reach = np.sqrt(spread / (1.0 - extra))
+    inwards = np.minimum(reach, np.abs(middle - centre))
+    outwards = np.divide(reach**2, inwards, out=np.zeros_like(reach), where=inwards > 0.0)
+    span = inwards + outwards
+    share = np.divide(outwards, span, out=np.full_like(span, 0.5), where=span > 0.0) * (1.0 - extra)
+    side = np.where(middle > centre, 1.0, -1.0)
+    y = np.concatenate([middle - side * inwards, middle + side * outwards, middle[extra > 0.0]])
+    weight = np.concatenate([area * share, area * (1.0 - extra - share), (area * extra)[extra > 0.0]])
+    order = np.argsort(y, kind="stable")
+    return Fibres(y=y[order], area=weight[order])
 
 
-def _strip_cuts(outline: Outline, centre: float, strips: int) -> np.ndarray:
-    """Heights that cut each half of the outline into ``strips`` strips, from the lowest to the highest."""
+def _strip_cuts(outline: Outline, centre: float, lower: int, upper: int) -> np.ndarray:
+    """Heights that cut the outline into ``lower`` strips below ``centre`` and ``upper`` above it, ascending."""
     low, high = outline.extent()
     flat = (outline.radius == 0.0) & (np.abs(outline.span[:, 1]) <= 1e-12 * (high - low))
     jumps = outline.point[flat, 1]
     cuts = [np.array([centre])]
-    for edge in (low, high):
+    for edge, strips in ((low, lower), (high, upper)):
         inside = np.abs(jumps - 0.5 * (centre + edge)) < (0.5 - 1e-9) * abs(edge - centre)
         stops = np.unique(np.concatenate([[centre, edge], np.round(jumps[inside], 12)]))
         stops = stops if edge > centre else stops[::-1]

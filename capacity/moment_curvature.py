@@ -166,7 +166,7 @@ def moment_history(
         The path of κ [1/m], from the unloaded section; each entry is one step of an implicit integration, exact in
         time for paths whose axial strain turns only where the curvature does.
     fibres : int
-        Fibres of each piece, a multiple of 4.
+        Fibres of each piece, at least 4.
 
     Raises
     ------

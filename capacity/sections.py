@@ -229,12 +229,12 @@ class Section:
         Parameters
         ----------
         count : int
-            Number of fibres, a multiple of 4.
+            Number of fibres, at least 4.
 
         Raises
         ------
         ValueError
-            When ``count`` is not a positive multiple of 4, or pieces have materials of their own: then each piece has
+            When ``count`` is below 4, or pieces have materials of their own: then each piece has
             fibres of its own, `fibres_by_material`.
         """
         if self.has_own_materials:
@@ -249,7 +249,7 @@ class Section:
         Raises
         ------
         ValueError
-            When ``count`` is not a positive multiple of 4.
+            When ``count`` is below 4.
         """
         plastic = self.weighted(lambda m: m.yield_stress, material)
         centre = plastic.height_of(0.5 * float(plastic.moments()[0]))

@@ -154,7 +154,7 @@ def together(section: Section, material: Material, criterion: str, options: Opti
         "M_N_over_M_max": greatest / surface.M_max,
         "moments_borne": [least, greatest],
         "facets": len(facets.fixed),
-        "facets_error": facets.error[1],
+        "facets_error": facets.error,
     }
     if options["moment"] is not None or M != 0.0:
         factor = surface.load_factor(N, Q, M)

@@ -77,8 +77,17 @@ def family(name: str, place: str = "family") -> list[Entry]:
 
 def nearest(text: str, count: int = 3) -> list[str]:
     """Names of the catalogue that look most like ``text``."""
-    found = difflib.get_close_matches(key(text), entries(), n=count, cutoff=0.6)
-    return [entries()[name].name for name in found]
+    wanted = _sizes(key(text))
+    found = difflib.get_close_matches(key(text), entries(), n=20, cutoff=0.6)
+    # Among names that look alike those of nearby sizes come first.
+    found.sort(
+        key=lambda name: (name[0] != key(text)[0], sum(abs(a - b) for a, b in zip(wanted, _sizes(name), strict=False)))
+    )
+    return [entries()[name].name for name in found[:count]]
+
+
+def _sizes(name: str) -> list[float]:
+    return [float(number) for number in re.findall(r"\d+(?:\.\d+)?", name)]
 
 
 def _rows(file: str) -> Iterator[dict[str, str]]:

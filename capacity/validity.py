@@ -42,10 +42,12 @@ def _ring(what: str, vertices: Vertices):  # type: ignore[no-untyped-def]  # sha
         if a == b:
             raise ValueError(f"corners {i} and {i % len(vertices) + 1} of the {what} coincide, at {_mm(a)}")
     scaled = Polygon([(x * 1e3, y * 1e3) for x, y in vertices])
+    if scaled.convex_hull.area <= 1e-12 * scaled.length**2:
+        raise ValueError(f"the {what} encloses nothing, see corner 1 at {_mm(vertices[0])}")
     fault, _, place = explain_validity(scaled).partition("[")
     if fault == "Self-intersection" or "Ring Self" in fault:
         raise ValueError(f"the {what} crosses itself at ({place.rstrip(']').replace(' ', ', ')}) mm")
-    if fault != "Valid Geometry" or scaled.area <= 1e-12 * scaled.length**2:
+    if fault != "Valid Geometry":
         raise ValueError(f"the {what} encloses nothing, see corner 1 at {_mm(vertices[0])}")
     return Polygon(vertices)
 

@@ -112,7 +112,9 @@ def _check_cells(points: np.ndarray, triangles: np.ndarray, scale: float, place:
     flat = np.abs(area) <= 1e-12 * np.abs(area).max()
     if flat.any():
         refuse(int(np.argmax(flat)), "encloses nothing", "mend the mesh there")
-    odd = area * np.sign(area.sum()) < 0.0
+    # Most of the area says which way round is right; the first cell where the two balance.
+    lead = area.sum() if abs(area.sum()) > 1e-9 * np.abs(area).sum() else area[0]
+    odd = area * lead < 0.0
     if odd.any():
         refuse(int(np.argmax(odd)), "is inverted", "number its corners the way of the others")
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])

@@ -95,5 +95,5 @@ def test_a_misspelt_name_is_answered_with_the_nearest(text: str, near: str) -> N
 
 
 def test_a_misspelt_family_is_answered_with_the_nearest() -> None:
-    with pytest.raises(InputError, match="write one of .*UPN"):
+    with pytest.raises(InputError, match=r"write one of .*UPN"):
         catalogue.family("UPNN")

@@ -23,6 +23,7 @@ import numpy as np
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(12)
 _GAUSS_T = 0.5 * (_GAUSS_X + 1.0)
 _GAUSS_W = 0.5 * _GAUSS_W
+_LINE_T, _LINE_W = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3.0), np.array([0.5, 0.5])
 
 #: Powers (p, q) of the moments that `Outline.moments` returns, in order: A, ∫x, ∫y, ∫x², ∫xy, ∫y².
 POWERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
@@ -175,9 +176,11 @@ class Outline:
 
     def _integrals(self, edge: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Contributions of edges ``edge`` between parameters ``low`` and ``high`` to the moments, (m, 6)."""
+        # Two points are exact for the cubics that straight edges give.
+        nodes, weights = (_GAUSS_T, _GAUSS_W) if self.radius[edge].any() else (_LINE_T, _LINE_W)
         width = (high - low)[:, None]
-        x, y, dy = self.coordinates(edge, low[:, None] + width * _GAUSS_T)
-        w = _GAUSS_W * width * dy * self.weight[edge, None] * x
+        x, y, dy = self.coordinates(edge, low[:, None] + width * nodes)
+        w = weights * width * dy * self.weight[edge, None] * x
         wx = w * x
         columns = (w, wx / 2.0, w * y, wx * x / 3.0, wx * y / 2.0, w * y * y)
         return np.stack([column.sum(axis=1) for column in columns], axis=1)

@@ -262,7 +262,8 @@ class Section:
         return answer
 
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(14)
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
+_ARC_NODES, _ARC_WEIGHTS = np.polynomial.legendre.leggauss(14)
 
 
 def shear_stiffness(bending: Outline, shear: Outline) -> float:
@@ -273,11 +274,15 @@ def shear_stiffness(bending: Outline, shear: Outline) -> float:
     area, _, first, _, _, second = bending.moments()
     centre = first / area
     stops = bending.stops()
-    low, high = stops[:-1, None], stops[1:, None]
+    middle, half = 0.5 * (stops[:-1] + stops[1:]), 0.5 * np.diff(stops)
+    first_y, last_y = (end[bending.radius > 0.0, 1] for end in bending.ends)
+    curved = np.any((middle[:, None] - first_y) * (middle[:, None] - last_y) < 0.0, axis=1)
     # y = c - r cos φ takes the square root out of the width of an arc at its ends.
-    phi = 0.5 * math.pi * (_NODES + 1.0)
-    y = (0.5 * (low + high) - 0.5 * (high - low) * np.cos(phi)).ravel()
-    dy = (0.25 * math.pi * _WEIGHTS * (high - low) * np.sin(phi)).ravel()
+    phi = 0.5 * math.pi * (_ARC_NODES + 1.0)
+    nodes, weights = -np.cos(phi), 0.5 * math.pi * _ARC_WEIGHTS * np.sin(phi)
+    y = np.concatenate([middle[~curved].repeat(len(_NODES)), middle[curved].repeat(len(nodes))])
+    y += np.concatenate([np.outer(half[~curved], _NODES).ravel(), np.outer(half[curved], nodes).ravel()])
+    dy = np.concatenate([np.outer(half[~curved], _WEIGHTS).ravel(), np.outer(half[curved], weights).ravel()])
     above = bending.moments(y)
     flow = above[:, 2] - centre * above[:, 0]
     width = shear.width(y)

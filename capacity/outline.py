@@ -144,12 +144,19 @@ class Outline:
 
     def coordinates(self, edge: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """x, y and dy/dt of edges ``edge`` (m,) at parameters ``t`` (m, k)."""
-        angle = self.start[edge, None] + self.sweep[edge, None] * t
-        r = self.radius[edge, None]
-        dx, dy = r * np.cos(angle), r * np.sin(angle)
-        x = self.point[edge, :1] + self.span[edge, :1] * t + dx
-        y = self.point[edge, 1:] + self.span[edge, 1:] * t + dy
-        return x, y, self.span[edge, 1:] + dx * self.sweep[edge, None]
+        px, py = self.point[edge, :1], self.point[edge, 1:]
+        sx, sy = self.span[edge, :1], self.span[edge, 1:]
+        x, y, dy = px + sx * t, py + sy * t, sy + 0.0 * t
+        arcs = np.flatnonzero(self.radius[edge])
+        if len(arcs):
+            e = edge[arcs]
+            r, sweep = self.radius[e, None], self.sweep[e, None]
+            angle = self.start[e, None] + sweep * (t if len(t) == 1 else t[arcs])
+            across = r * np.cos(angle)
+            x[arcs] += across
+            y[arcs] += r * np.sin(angle)
+            dy[arcs] = across * sweep
+        return x, y, dy
 
     @cached_property
     def ends(self) -> tuple[np.ndarray, np.ndarray]:

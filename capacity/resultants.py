@@ -10,7 +10,7 @@ with τy = fy / 2 (Tresca) or fy / √3 (von Mises).
 from dataclasses import dataclass
 
 from capacity.materials import Material
-from capacity.sections import Section
+from capacity.sections import Section, shear_stiffness
 from capacity.yield_criteria import shear_ratio
 
 
@@ -54,6 +54,7 @@ def capacity(section: Section, material: Material, criterion: str = "von-mises")
     ----------
     section : Section
     material : Material
+        Of the pieces that name none of their own.
     criterion : str
         ``"tresca"`` or ``"von-mises"``.
 
@@ -62,16 +63,45 @@ def capacity(section: Section, material: Material, criterion: str = "von-mises")
     InputError
         For an unknown criterion.
     """
+    tau = shear_ratio(criterion)
+    if section.has_own_materials:
+        return _of_several_materials(section, material, tau)
     fy = material.yield_stress
-    tau = shear_ratio(criterion) * fy
     return Capacity(
         N_max=fy * section.area,
-        Q_max=tau * section.wall_area,
+        Q_max=tau * fy * section.wall_area,
         M_max=fy * section.plastic_modulus,
         M_yield=fy * section.elastic_modulus,
-        Q_full_area=tau * section.area,
+        Q_full_area=tau * fy * section.area,
         EA=material.youngs_modulus * section.area,
         GA_s=material.shear_modulus * section.shear_area,
         EI=material.youngs_modulus * section.second_moment_of_area,
         shape_factor=section.shape_factor,
+    )
+
+
+def _of_several_materials(section: Section, material: Material, tau: float) -> Capacity:
+    """The same integrals with each piece's own fy, E and G; moments are those without axial force."""
+    plastic = section.weighted(lambda m: m.yield_stress, material)
+    force = float(plastic.moments()[0])
+    first = plastic.moments(plastic.height_of(0.5 * force))[2]
+    M_max = float(2.0 * first - plastic.moments()[2])
+    elastic = section.weighted(lambda m: m.youngs_modulus, material)
+    area, _, sy, _, _, syy = elastic.moments().tolist()
+    centre, EI = sy / area, syy - sy * sy / area
+    pieces = [(part, part.material or material) for part in section.parts]
+    M_yield = min(
+        m.yield_stress * EI / (m.youngs_modulus * abs(y - centre)) for part, m in pieces for y in part.outline.extent()
+    )
+    shear = section.weighted(lambda m: m.shear_modulus, material)
+    return Capacity(
+        N_max=force,
+        Q_max=sum(tau * m.yield_stress * part.wall_area() for part, m in pieces),
+        M_max=M_max,
+        M_yield=M_yield,
+        Q_full_area=tau * force,
+        EA=area,
+        GA_s=shear_stiffness(elastic, shear),
+        EI=EI,
+        shape_factor=M_max / M_yield,
     )

@@ -53,6 +53,8 @@ QUANTITIES = {
     "frequency": ("Hz", "2 Hz"),
     "stiffness": ("N/m", "1e6 N/m"),
     "rotational stiffness": ("N*m/rad", "2 MN m/rad"),
+    "moment of inertia": ("kg*m**2", "58320 kg m^2"),
+    "curvature": ("1/m", "0.02 1/m"),
     "number": ("", "0.01"),
 }
 

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from capacity.outline import Outline, arc, path
+from capacity.outline import Outline
+from capacity.paths import arc, path
 
 sizes = st.floats(0.01, 2.0)
 fractions = st.floats(0.02, 0.98)

@@ -173,6 +173,17 @@ class State:
                 )
         self.slope = None
 
+    def load_to_rest(self) -> None:
+        """Come to rest under the loads that act, from wherever the frame is."""
+        self._work = max(self._work, self.frame.elastic_energy(self.response))
+        if not self._step(self.load, np.zeros(self.frame.size), 1.0):
+            raise NotConverged("the structure does not come to rest under its loads")
+
+    @property
+    def applied(self) -> np.ndarray:
+        """Loads that act, (size,)."""
+        return self._dead * self.frame.weight + self.load * self.frame.pattern
+
     def move_to(self, target: float) -> None:
         """Step to the displacement ``target``, in smaller pieces where need be."""
         self._advance(self.position, target, self.control, 0.0, "displacement", "m")

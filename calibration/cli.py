@@ -228,6 +228,54 @@ def calibrate(
     return 0 if result.target_met else 1
 
 
+@app.command
+def reference(
+    scene: str,
+    /,
+    *,
+    target_error: str = "0.05 %",
+    output: Folder = None,
+    as_json: Json = False,
+    cache: bool = True,
+) -> int:
+    """Follow a push with the elastic–plastic finite-element reference: curve, hinges, energies, and their errors.
+
+    Parameters
+    ----------
+    scene
+        A TOML file, or the name of a built-in scene.
+    target_error
+        Largest estimated error of the load, as a share of the largest load ("0.05 %", "0.001").
+    output
+        Folder for the curve, hinges and sections as CSV and a plot as SVG; out/SCENE by default.
+    as_json
+        Print one JSON object, in SI units, in place of tables.
+    cache
+        Keep results on disk and use them again for the same content.
+    """
+    import scene as scenes_package
+    from calibration.output import prepare_folder, write_files
+    from calibration.progress import progress_bar
+    from calibration.reference_command import answer, files, print_answer
+    from capacity.units import positive
+
+    target = positive(target_error, "number", "--target-error")
+    loaded = scenes_package.load_scene(scene)
+    folder = output or Path("out") / Path(scene).stem
+    prepare_folder(folder)
+    messages = Console(stderr=True)
+    with progress_bar(messages) as watch:
+        found = answer(loaded, target, cache, lambda share: watch("reference", share))
+    texts = files(found, loaded.title)
+    write_files(folder, texts)
+    if as_json:
+        print(json.dumps(found))
+    else:
+        print_answer(found, Console())
+    messages.print(f"Written to {folder}: {', '.join(texts)}", soft_wrap=True)
+    return 0 if found["error_estimate"] <= target else 1
+
+
 def _run(tokens: Sequence[str] | None) -> int:
     return int(app(tokens, exit_on_error=False, print_error=False) or 0)
 

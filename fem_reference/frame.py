@@ -74,7 +74,7 @@ class Frame:
     element_weight, element_pattern : (n, 8) float
         The parts of dead and of proportional loads that are spread over elements.
     pattern : (size,) float
-        Proportional loads, or the unit force of the push.
+        Proportional loads, or the unit force of the push; step loads when the scene moves.
     meshes : dict[str, MemberMesh]
         By member, in the order of the elements.
     """

@@ -34,7 +34,7 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
     spans = [np.outer(np.diff(mesh.points), scene.axis(name)[:2]) for name, mesh in meshes.items()]
     fixed, settlement = _prescribed(scene, ends, dofs, size)
     weight, element_weight = _loads(scene, scene.loads_of("dead"), meshes, dofs, ends, size, own_weight=True)
-    proportional = scene.loads_of("proportional")
+    proportional = scene.loads_of("proportional") if scene.motion is None else scene.loads_of("step")
     pattern, element_pattern = _loads(scene, proportional, meshes, dofs, ends, size, own_weight=False)
     if scene.pushed is not None and not proportional:
         pattern = control_vector(scene, ends, size)

@@ -5,10 +5,10 @@ the area below the neutral axis
 
     A_t = (A + N / fy) / 2   in tension,   M_pl,N = 2 fy |∫ y dA|  over A_t.
 
-Without hardening a fibre section comes to it in the limit only. Near it 1 - M / M_pl,N goes with κ^-2, and the rotation,
-∫ κ dx over the plastic zone, lacks a share in proportion to (1 - M / M_pl,N)^(1/2) of what it will be when the hinge is
-there. So that root falls to zero in proportion to the load that is still missing, and the hinge's load is where the line
-through the root at `NEAR` and at `FULL` meets zero. With hardening, M passes M_pl,N, and that is the load.
+Without hardening a fibre section comes to it in the limit only. Near it 1 - M / M_pl,N goes with κ^-2, and the
+rotation, ∫ κ dx over the plastic zone, lacks a share in proportion to (1 - M / M_pl,N)^(1/2) of what it will be when
+the hinge is there. So that root falls to zero in proportion to the load that is still missing, and the hinge's load is
+where the line through the root at `NEAR` and at `FULL` meets zero. With hardening, M passes M_pl,N: that is the load.
 
 A hinge that grows along its member is one hinge, and so is one at a node where just two member ends meet.
 """
@@ -23,7 +23,7 @@ from fem_reference.frame import Frame
 from fem_reference.paths import Trace
 from scene import Scene
 
-#: Shares of M_pl,N from which the load at which it is reached is found; a section that has come to the second is a hinge.
+#: Shares of M_pl,N from which the load at which it is reached is found; the second makes a section a hinge.
 NEAR, FULL = 0.995, 0.9992
 #: Share of a path's last rise at which it is as good as level.
 _LEVEL = 0.999
@@ -95,8 +95,10 @@ def hinge_events(frame: Frame, scene: Scene, trace: Trace) -> tuple[HingeEvent, 
         history = share[:, start : start + count].reshape(len(share), -1)[:, order]
         stations = mesh.stations.ravel()[order]
         start += count
-        for i in np.flatnonzero((history >= FULL).any(axis=0)):
-            found.append((_time_of_hinge(history[:, i], np.array(trace.load)), name, int(i), float(stations[i])))
+        found += [
+            (_time_of_hinge(history[:, i], np.array(trace.load)), name, int(i), float(stations[i]))
+            for i in np.flatnonzero((history >= FULL).any(axis=0))
+        ]
     events: list[HingeEvent] = []
     zones: dict[str, list[tuple[int, float]]] = {name: [] for name in frame.meshes}
     seen: set[str] = set()

@@ -22,7 +22,12 @@ from fem_reference.frame import Frame, Response
 #: root is the relative error of a force. (The forces themselves are no measure: in a very short element they carry
 #: rounding errors that do no work.)
 TOLERANCE = 1e-18
-_MOST_ITERATIONS = 25
+#: Where a section yields throughout, the last forces come slowly; a step that is late need not be better than this.
+LATE_TOLERANCE = 1e-16
+_MOST_ITERATIONS, _LATE = 25, 10
+#: Newton steps on a kinked path may first go astray; they are cut when the work of out-of-balance forces grows by more.
+_GROWTH = 1e3
+_MOST_CUTS = 5
 _SMALLEST_CUT = 2.0**-12
 _UNLOADING_STEPS = 20
 
@@ -168,6 +173,17 @@ class State:
                 )
         self.slope = None
 
+    def load_to_rest(self) -> None:
+        """Come to rest under the loads that act, from wherever the frame is."""
+        self._work = max(self._work, self.frame.elastic_energy(self.response))
+        if not self._step(self.load, np.zeros(self.frame.size), 1.0):
+            raise NotConverged("the structure does not come to rest under its loads")
+
+    @property
+    def applied(self) -> np.ndarray:
+        """Loads that act, (size,)."""
+        return self._dead * self.frame.weight + self.load * self.frame.pattern
+
     def move_to(self, target: float) -> None:
         """Step to the displacement ``target``, in smaller pieces where need be."""
         self._advance(self.position, target, self.control, 0.0, "displacement", "m")
@@ -196,11 +212,17 @@ class State:
         if self.slope is not None:
             d += distance * self.slope[0]
             load += distance * self.slope[1]
-        d[frame.fixed] = self._dead * frame.settlement
-        for _ in range(_MOST_ITERATIONS):
-            response = frame.respond(d, self.response.plastic_strain)
-            applied = self._dead * frame.weight + load * frame.pattern
-            residual = (applied - response.internal)[free]
+        settling = np.zeros(frame.size)
+        settling[frame.fixed] = self._dead * frame.settlement - d[frame.fixed]
+        if settling.any():
+            # The rest of the frame follows as it would elastically; a support that moved alone would tear its member.
+            pull = np.einsum("eij,ej->ei", self.response.matrices, settling[frame.dofs])
+            force = np.bincount(frame.dofs.ravel(), weights=pull.ravel(), minlength=frame.size)
+            settling[free] = self.solver.solve(self.response.matrices, frame.springs, -force[free])[:, 0]
+            d += settling
+        response, applied, residual = self._balance(d, load)
+        for iteration in range(_MOST_ITERATIONS):
+            tolerance = TOLERANCE if iteration < _LATE else LATE_TOLERANCE
             gap = goal - float(c @ d) - e * load
             try:
                 answer = self.solver.solve(response.matrices, frame.springs, residual, frame.pattern[free])
@@ -212,13 +234,30 @@ class State:
                 return False
             reactions = float(response.internal[frame.fixed] @ d[frame.fixed])
             work = max(self._work, abs(float(applied @ d)) + abs(reactions))
-            if abs(residual @ change) <= TOLERANCE * work and abs(gap) <= 1e-9 * max(abs(goal), abs(distance)):
+            on_goal = abs(gap) <= 1e-9 * max(abs(goal), abs(distance))
+            if abs(residual @ change) <= tolerance * work and on_goal:
                 self._accept(d, load, distance, response, applied, residual)
                 self._work = work
                 return True
-            d[free] += change
-            load += rise
+            # Line search: not so far that the out-of-balance forces explode.
+            here, there, length = float(residual @ change), np.inf, 1.0
+            for cut in range(_MOST_CUTS):
+                if cut:
+                    length *= min(max(here / (here - there), 0.1), 0.5)
+                ahead, factor = d.copy(), load + length * rise
+                ahead[free] += length * change
+                response, applied, residual = self._balance(ahead, factor)
+                there = float(residual @ change)
+                if not on_goal or abs(there) <= max(_GROWTH * abs(here), TOLERANCE * work):
+                    break
+            d, load = ahead, factor
         return False
+
+    def _balance(self, d: np.ndarray, load: float) -> tuple[Response, np.ndarray, np.ndarray]:
+        """The frame's response, the loads on it, and the forces on free degrees of freedom that are out of balance."""
+        response = self.frame.respond(d, self.response.plastic_strain)
+        applied = self._dead * self.frame.weight + load * self.frame.pattern
+        return response, applied, (applied - response.internal)[self.solver.free]
 
     def _accept(
         self,

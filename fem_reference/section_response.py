@@ -14,7 +14,7 @@ import numpy as np
 
 #: Least tangent modulus over E in the Newton matrix. A section that yields throughout has no stiffness left, not even
 #: axially, and a member beyond it could slide off; the floor keeps the matrix regular and leaves the forces alone.
-TANGENT_FLOOR = 1e-8
+TANGENT_FLOOR = 1e-7
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,12 @@ def _check_members(scene: Scene) -> None:
             _check_known(scene, node, f"members.{name}.{key}")
         if scene.nodes[member.start].at == scene.nodes[member.end].at:
             raise InputError(f"members.{name}", "its two ends are at the same point", "move one of its nodes")
+        if member.section.has_own_materials:
+            cure = "use a section of one material; `ductile capacity` takes this one"
+            raise InputError(f"members.{name}.section", "members of several materials are not modelled yet", cure)
+        if member.material.curve is not None:
+            cure = 'give the slope beyond yield instead, for example "Et=2 GPa"'
+            raise InputError(f"members.{name}.material", "a table of stresses is not modelled in members yet", cure)
 
 
 def _check_known(scene: Scene, node: str, place: str) -> None:

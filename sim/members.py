@@ -37,7 +37,7 @@ class Model:
     law : str
         ``"elastic-plastic"`` or ``"fibre"``.
     fibres : int
-        Fibres a section, for the fibre law; a multiple of 4.
+        Fibres a section, for the fibre law; at least 4.
     dt : float
         Step [s].
     iterations : int

@@ -118,14 +118,12 @@ def push_over(
     drive = _by_pattern if assembly.pattern else _by_pusher
     displacement, load = drive(assembly, origin, direction, travel, model.dt, watch)
     seconds = time.perf_counter() - started
-    if turns == 1:  # where the node was, not where it was wanted; on a way that turns that is not one place
-        progress = np.interp(displacement, distances, np.arange(len(distances)))
-    else:
-        progress = progress[1:]
+    # Where the node was, not where it was wanted; on a way that turns, though, one place is passed more than once.
+    passed = np.interp(displacement, distances, np.arange(len(distances))) if turns == 1 else progress[1:]
     return Push(
         displacement=np.append(0.0, displacement),
         load=np.append(0.0, load),
-        progress=np.append(0.0, progress),
+        progress=np.append(0.0, passed),
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
         joints=len(assembly.places),
         steps=steps,

@@ -1,0 +1,160 @@
+"""What ``ductile reference`` answers: an object for JSON, tables, a plot."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+from rich.console import Console
+from rich.table import Table
+
+from calibration.result_cache import content_key, keep, recall
+from capacity import InputError
+from fem_reference import Pushover, pushover, remarks
+from scene import Scene
+
+_ROWS = 11
+
+
+def answer(scene: Scene, tolerance: float, use_cache: bool, watch: Callable[[float], None]) -> dict[str, Any]:
+    """The reference's answer to ``scene`` as one object, kept on disk or fresh; SI."""
+    if scene.pushed is None:
+        raise InputError("motion", "this command follows pushes only", "add [push] in place of [motion]")
+    key = content_key(scene, tolerance)
+    kept = recall(key) if use_cache else None
+    if kept is not None:
+        return {**kept, "cached": True}
+    found = as_object(pushover(scene, tolerance, watch), scene)
+    if use_cache:
+        keep(key, found)
+    return {**found, "cached": False}
+
+
+def as_object(result: Pushover, scene: Scene) -> dict[str, Any]:
+    """A result as what JSON can say; SI."""
+    return {
+        "displacement": result.displacement.tolist(),
+        "load": result.load.tolist(),
+        "hinges": [
+            {
+                "node": hinge.node,
+                "member": hinge.member,
+                "position": hinge.position,
+                "load": hinge.load,
+                "displacement": hinge.displacement,
+                "error_estimate": hinge.error_estimate,
+            }
+            for hinge in result.hinges
+        ],
+        "error_estimate": result.error_estimate,
+        "method": result.method,
+        "seconds": result.seconds,
+        "outcome": result.outcome,
+        "remarks": list(remarks(scene)),
+        "elements": result.elements,
+        "fibres": result.fibres,
+        "imbalance": result.imbalance,
+        "residual": result.residual,
+        "residual_error": result.residual_error,
+        "energy": {
+            "external": result.energy.external.tolist(),
+            "elastic": result.energy.elastic.tolist(),
+            "plastic": result.energy.plastic.tolist(),
+            "error_estimate": result.energy.error_estimate,
+        },
+        "members": {
+            name: {
+                "end_forces": member.end_forces[-1].tolist(),
+                "point": member.point.tolist(),
+                "shape": member.shape.tolist(),
+                "station": member.station.tolist(),
+                "axial_force": member.axial_force.tolist(),
+                "moment": member.moment.tolist(),
+                "curvature": member.curvature.tolist(),
+                "plastic_strain": member.plastic_strain.tolist(),
+            }
+            for name, member in result.members.items()
+        },
+    }
+
+
+def files(found: dict[str, Any], title: str) -> dict[str, str]:
+    """Text files of an answer by name."""
+    energy = found["energy"]
+    columns = [found["displacement"], found["load"], energy["external"], energy["elastic"], energy["plastic"]]
+    head = ["displacement_m", "load", "external_J", "elastic_J", "plastic_J"]
+    hinges = [list(hinge.values()) for hinge in found["hinges"]]
+    hinge_head = ["node", "member", "position_m", "load", "displacement_m", "error_estimate"]
+    sections: list[list[Any]] = []
+    for name, member in found["members"].items():
+        keys = ("station", "axial_force", "moment", "curvature", "plastic_strain")
+        sections += [[name, *row] for row in zip(*(member[key] for key in keys), strict=True)]
+    section_head = ["member", "station_m", "N_N", "M_Nm", "curvature_1_per_m", "plastic_strain"]
+    return {
+        "reference.csv": _csv(head, zip(*columns, strict=True)),
+        "hinges.csv": _csv(hinge_head, hinges),
+        "sections.csv": _csv(section_head, sections),
+        "reference.svg": _svg(found, title),
+    }
+
+
+def print_answer(found: dict[str, Any], console: Console) -> None:
+    """Curve, hinges, energies and error estimates as tables."""
+    console.print(found["method"])
+    share = 100.0 * found["error_estimate"]
+    largest = max(map(abs, found["load"]))
+    curve = Table(title=f"Load, ± {share:.2g} % of the largest ({found['error_estimate'] * largest:.2g})")
+    for head in ("displacement [mm]", "load"):
+        curve.add_column(head, justify="right")
+    last = len(found["load"]) - 1
+    for row in range(_ROWS):
+        k = round(row * last / (_ROWS - 1))
+        curve.add_row(f"{1e3 * found['displacement'][k]:.4g}", f"{found['load'][k]:.6g}")
+    console.print(curve)
+    hinges = Table(title="Hinges, in order")
+    for head in ("where", "load", "± [% of largest]", "displacement [mm]"):
+        hinges.add_column(head, justify="left" if head == "where" else "right")
+    for hinge in found["hinges"]:
+        where = hinge["node"] or f"{hinge['member']} at {hinge['position']:.4g} m"
+        error = f"{100.0 * hinge['error_estimate']:.2g}"
+        hinges.add_row(where, f"{hinge['load']:.6g}", error, f"{1e3 * hinge['displacement']:.4g}")
+    console.print(hinges)
+    energy = found["energy"]
+    console.print(
+        f"Work of the loads {energy['external'][-1]:.5g} J: elastic {energy['elastic'][-1]:.5g} J, plastic "
+        f"{energy['plastic'][-1]:.5g} J, each ± {100.0 * energy['error_estimate']:.2g} % of the largest work"
+    )
+    console.print(f"Out of balance: {found['imbalance']:.1e} of all loads. End: {found['outcome']}.")
+    for remark in found["remarks"]:
+        console.print(f"Mind: {remark}.")
+
+
+def _csv(head: list[str], rows: Iterable[Iterable[Any]]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def _svg(found: dict[str, Any], title: str) -> str:
+    """Curve with its hinges."""
+    with matplotlib.rc_context({"svg.hashsalt": "ductile-joints", "svg.fonttype": "none"}):
+        figure = Figure(figsize=(7.2, 4.6), layout="constrained")
+        axes = figure.subplots()
+        axes.plot([1e3 * d for d in found["displacement"]], found["load"], color="#1f6fb2", lw=2.0)
+        for i, hinge in enumerate(found["hinges"], 1):
+            place = (1e3 * hinge["displacement"], hinge["load"])
+            axes.plot(*place, "o", color="#d1495b")
+            axes.annotate(f"{i} {hinge['node'] or hinge['member']}", place, (4, -12), textcoords="offset points")
+        axes.set_xlabel("displacement of the pushed node [mm]")
+        axes.set_ylabel("load")
+        axes.set_title(title)
+        axes.grid(color="#e4e8ec")
+        text = io.StringIO()
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    return text.getvalue()

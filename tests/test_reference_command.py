@@ -1,0 +1,81 @@
+"""`ductile reference`: keys, files, cache, exit statuses."""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from calibration import reference_command
+from calibration.cli import main
+from scene import builtin_text
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.chdir(tmp_path)
+
+
+def ductile(*tokens: str) -> int:
+    with pytest.raises(SystemExit) as end:
+        main(tokens)
+    return int(end.value.code or 0)
+
+
+def test_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert ductile("reference", "cantilever", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {"displacement", "load", "hinges", "error_estimate", "method", "seconds"} <= set(found)
+    assert found["load"][-1] == pytest.approx(29375.0, rel=1e-4)  # M_p / L
+    assert [hinge["node"] for hinge in found["hinges"]] == ["root"]
+    assert found["outcome"].startswith("mechanism")
+    folder = tmp_path / "out" / "cantilever"
+    assert {file.name for file in folder.iterdir()} == {"reference.csv", "hinges.csv", "sections.csv", "reference.svg"}
+    rows = list(csv.DictReader((folder / "reference.csv").read_text(encoding="utf-8").splitlines()))
+    assert [float(row["load"]) for row in rows] == found["load"]
+
+
+def test_results_are_kept_by_content(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    runs: list[Any] = []
+    solve = reference_command.pushover
+    monkeypatch.setattr(reference_command, "pushover", lambda *args: runs.append(args) or solve(*args))
+    ductile("reference", "cantilever", "--json")
+    first = json.loads(capsys.readouterr().out)
+    ductile("reference", "cantilever", "--json")
+    second = json.loads(capsys.readouterr().out)
+    assert len(runs) == 1
+    assert (first.pop("cached"), second.pop("cached")) == (False, True)
+    assert first == second
+    Path("other.toml").write_text(builtin_text("cantilever").replace("50x100", "50x101"), encoding="utf-8")
+    ductile("reference", "other.toml")
+    assert len(runs) == 2
+    ductile("reference", "cantilever", "--no-cache")
+    assert len(runs) == 3
+
+
+def test_tables(capsys: pytest.CaptureFixture[str]) -> None:
+    assert ductile("reference", "cantilever") == 0
+    said = capsys.readouterr().out
+    assert "Hinges, in order" in said
+    assert "root" in said
+    assert "29375" in said
+
+
+def test_a_target_that_is_out_of_reach_gives_status_1() -> None:
+    assert ductile("reference", "cantilever", "--target-error", "1e-12", "--no-cache") == 1
+
+
+def test_bad_input_gives_status_2(capsys: pytest.CaptureFixture[str]) -> None:
+    assert ductile("reference", "cantilevr") == 2
+    assert "did you mean cantilever" in capsys.readouterr().err
+
+
+def test_short_members_and_long_pushes_are_remarked(capsys: pytest.CaptureFixture[str]) -> None:
+    text = builtin_text("cantilever").replace('"1 m"', '"0.4 m"')
+    Path("short.toml").write_text(text, encoding="utf-8")
+    ductile("reference", "short.toml", "--json")
+    said = json.loads(capsys.readouterr().out)["remarks"]
+    assert any("members.beam: L/h = 4" in remark for remark in said)
+    assert any("kinematics" in remark for remark in said)

@@ -37,7 +37,7 @@ def test_written_out_scene_is_the_same(tmp_path: Path) -> None:
         ("fy=235 MPa, E=210 GPa", "curve=0.0011:231 0.02:250 MPa", "members.beam.material", "not modelled"),
         (
             "rectangle 50x100 mm",
-            "rectangle 50x100 mm of S355 + rectangle 50x10 mm at 0,55 mm",
+            "rectangle 50x100 mm of S355 + rectangle 50x10 mm at 0,100 mm",
             "members.beam.section",
             "several",
         ),

@@ -107,16 +107,18 @@ def print_answer(found: dict[str, Any], console: Console) -> None:
     console.print(found["method"])
     share = 100.0 * found["error_estimate"]
     largest = max(map(abs, found["load"]))
-    curve = Table(title=f"Load, ± {share:.2g} % of the largest ({found['error_estimate'] * largest:.2g})")
-    for head in ("displacement [mm]", "load"):
+    curve = Table(
+        title=f"Load, ± {found['error_estimate'] * largest:.2g} ({share:.2g} % of the largest)", title_justify="left"
+    )
+    for head in ("displacement, mm", "load"):
         curve.add_column(head, justify="right")
     last = len(found["load"]) - 1
     for row in range(_ROWS):
         k = round(row * last / (_ROWS - 1))
         curve.add_row(f"{1e3 * found['displacement'][k]:.4g}", f"{found['load'][k]:.6g}")
     console.print(curve)
-    hinges = Table(title="Hinges, in order")
-    for head in ("where", "load", "± [% of largest]", "displacement [mm]"):
+    hinges = Table(title="Hinges, in order", title_justify="left")
+    for head in ("where", "load", "± % of largest", "displacement, mm"):
         hinges.add_column(head, justify="left" if head == "where" else "right")
     for hinge in found["hinges"]:
         where = hinge["node"] or f"{hinge['member']} at {hinge['position']:.4g} m"
@@ -149,12 +151,15 @@ def _svg(found: dict[str, Any], title: str) -> str:
         axes.plot([1e3 * d for d in found["displacement"]], found["load"], color="#1f6fb2", lw=2.0)
         for i, hinge in enumerate(found["hinges"], 1):
             place = (1e3 * hinge["displacement"], hinge["load"])
-            axes.plot(*place, "o", color="#d1495b")
-            axes.annotate(f"{i} {hinge['node'] or hinge['member']}", place, (4, -12), textcoords="offset points")
+            axes.plot(*place, "o", color="#d1495b", label=f"{i}  {hinge['node'] or hinge['member']}")
+            # Hinges that form together would hide each other's numbers.
+            axes.annotate(f"{i}", place, (-12 + 10 * (i % 2), 6 + 6 * (i % 3)), textcoords="offset points")
         axes.set_xlabel("displacement of the pushed node [mm]")
         axes.set_ylabel("load")
         axes.set_title(title)
         axes.grid(color="#e4e8ec")
+        if found["hinges"]:
+            axes.legend(title="hinges, in order", loc="lower right", frameon=False, handlelength=0.0)
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None})
     return text.getvalue()

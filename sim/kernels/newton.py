@@ -260,7 +260,7 @@ def iterate(  # type: ignore[no-untyped-def]
             start = spring * rate
         start += linearise(n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope)
         share, low, high, fall_low, fall_high = 1.0, 0.0, 1.0, start, 0.0
-        step_length = 1.0
+        step_length, last = 1.0, False
         for search in range(MOST_SEARCHES):
             advance(n, moving, step_length, joint_bodies, body_at, jacobian, slope, impulse, velocity)
             if spread:
@@ -286,7 +286,7 @@ def iterate(  # type: ignore[no-untyped-def]
                 spring = spread_residual(moving, settings, pattern, velocity)
                 error += spring_light * spring * spring
             converged = error <= tolerance * (size + motion)
-            if converged or predicting:
+            if converged or predicting or last:
                 break
             # Along the step the energy is convex: where it rises too steeply, its least value lies further back.
             fall = descent(n, moving, joint_bodies, jacobian, residual, solution)
@@ -305,30 +305,10 @@ def iterate(  # type: ignore[no-untyped-def]
             if high - low <= _KINK * high:
                 # The slope jumps here, where a joint stops yielding. Beyond the jump its tangent is the stiff one, and
                 # the next step can follow it; before it the same step would be tried again.
-                if fall > 0.0:
-                    advance(n, moving, high - share, joint_bodies, body_at, jacobian, slope, impulse, velocity)
-                    if spread:
-                        advance_spread(moving, (high - share) * spring_slope, body_at, pattern, settings, velocity)
-                        spring = spread_residual(moving, settings, pattern, velocity)
-                    error, size = respond(
-                        n,
-                        joint_bodies,
-                        laws,
-                        stiffness,
-                        damping,
-                        scale,
-                        settings,
-                        jacobian,
-                        deformation,
-                        lightness,
-                        impulse,
-                        velocity,
-                        response,
-                        residual,
-                        False,
-                    )
-                break
-            if search % 3 == 2:
+                if fall <= 0.0:
+                    break
+                new, last = high, True
+            elif search % 3 == 2:
                 new = 0.5 * (low + high)
             else:
                 new = low + (high - low) * fall_low / (fall_low - fall_high)

@@ -32,6 +32,7 @@ from sim.kernels.commit import commit, weaken
 from sim.kernels.contacts import PLACE_WORDS, TOUCH_WORDS, collect, complement, operator, push_apart, strike
 from sim.kernels.kinematics import prepare
 from sim.kernels.newton import advance, iterate, linearise
+from sim.kernels.spread import advance_spread
 from sim.memory import call_notice, floats, integers, table
 
 _MOST_ROUNDS = 40
@@ -49,10 +50,10 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     t = integers(c, at.CONTROL_WORDS)
     n, bodies = t[at.JOINTS], t[at.BODIES]
     settings = floats(t[at.SETTINGS], at.SETTINGS_WORDS)
+    ratio = h / settings[at.STEP] if settings[at.STEP] > 0.0 else 0.0
     settings[at.STEP] = h
-    settings[at.SPREAD_IMPULSE] = 0.0
+    settings[at.SPREAD_IMPULSE] *= ratio * t[at.SPREAD]
     t[at.FRESH] = 1
-    table(t[at.IMPULSE], n, 3)[:, :] = 0.0
     floats(t[at.SCALE], n)[:] = 1.0
     body_at = integers(t[at.BODY_AT], bodies)
     start, last = table(t[at.START_VELOCITY], bodies, 3), table(t[at.LAST_VELOCITY], bodies, 3)
@@ -74,6 +75,11 @@ def begin(c, h):  # type: ignore[no-untyped-def]
         table(t[at.LIGHTNESS], n, 3),
         last,
     )
+    # The last step's impulses, to start from.
+    active, impulse = integers(t[at.ACTIVE], n), table(t[at.IMPULSE], n, 3)
+    for k in range(n):
+        for i in range(3):
+            impulse[k, i] *= ratio * active[k]
     t[at.PUSHED_APART] = 0
     length, room = t[at.HASH_LENGTH], t[at.ROOM]
     t[at.CONTACTS], t[at.MISSED] = collect(
@@ -129,6 +135,16 @@ def solve(c):  # type: ignore[no-untyped-def]
         return  # nothing else has touched the structure since it was solved
     t[at.FRESH] = 0
     t[at.SOLVES] += 1
+    if predicting:
+        # From the velocities without joints, forces would be differences of numbers a million times their size.
+        slope = table(t[at.SLOPE], n, 3)
+        for k in range(n):
+            for i in range(3):
+                slope[k, i], impulse[k, i] = impulse[k, i], 0.0
+        advance(n, moving, 1.0, joint_bodies, body_at, jacobian, slope, impulse, velocity)
+        if t[at.SPREAD] == 1:
+            amount, settings[at.SPREAD_IMPULSE] = settings[at.SPREAD_IMPULSE], 0.0
+            advance_spread(moving, amount, body_at, table(t[at.PATTERN], bodies, 3), settings, velocity)
     converged, residual, untouched = False, 0.0, True
     for _ in range(_MOST_ROUNDS):
         steps, converged, residual = iterate(
@@ -247,6 +263,7 @@ def touch(t, velocity):  # type: ignore[no-untyped-def]
 def refuse(t, joint):  # type: ignore[no-untyped-def]
     """Put the structure's bodies back to where and how they were before the step."""
     t[at.FAULT] = joint
+    table(t[at.IMPULSE], t[at.JOINTS], 3)[:, :] = 0.0
     h = floats(t[at.SETTINGS], at.SETTINGS_WORDS)[at.STEP]
     body_at, before = integers(t[at.BODY_AT], t[at.BODIES]), table(t[at.START_VELOCITY], t[at.BODIES], 3)
     last = table(t[at.LAST_VELOCITY], t[at.BODIES], 3)
@@ -305,7 +322,7 @@ def _compile(digest: str) -> tuple[Any, ...]:
 
     @cfunc(step, cache=True)
     def apply_cached_impulse(constraint, ratio):  # type: ignore[no-untyped-def]
-        # Nothing: the implicit solve needs no warm start.
+        # Nothing: the first solve of a step starts from the cached impulses by itself.
         digest  # noqa: B018
 
     @cfunc(step, cache=True)

@@ -35,7 +35,7 @@ from sim.kernels.spread import (
 )
 from sim.memory import call_law, floats
 
-MOST_NEWTON_STEPS = 40
+MOST_NEWTON_STEPS = 100
 MOST_SEARCHES = 40
 _KINK = 1e-3
 

@@ -29,9 +29,7 @@ def explained_compilation(console: Console) -> Iterator[None]:
     timer = threading.Timer(
         _PATIENCE,
         console.print,
-        args=[
-            "Compiling the joint kernels for this machine: about 20 seconds, once. Later runs load them from a cache."
-        ],
+        args=["Compiling the joint kernels for this machine: about half a minute, once. Later runs load a cache."],
     )
     timer.daemon = True
     timer.start()

@@ -134,7 +134,6 @@ def solve(c):  # type: ignore[no-untyped-def]
     if not load_velocities(t, velocity) and not predicting and t[at.CONTACTS] == 0:
         return  # nothing else has touched the structure since it was solved
     t[at.FRESH] = 0
-    t[at.SOLVES] += 1
     if predicting:
         # From the velocities without joints, forces would be differences of numbers a million times their size.
         slope = table(t[at.SLOPE], n, 3)

@@ -6,17 +6,17 @@ The control table is int64: sizes, counters, flags, then the addresses of the ar
 # Sizes.
 BODIES, MOVING, JOINTS, LOWER = 0, 1, 2, 3
 # What happened: first joint whose law gave a number that is not finite (or -1), counters, newly broken joints.
-FAULT, NEWTON_STEPS, SOLVES, UNCONVERGED, BROKE = 4, 5, 6, 7, 8
+FAULT, NEWTON_STEPS, UNCONVERGED, BROKE = 4, 5, 6, 7
 # Within a step: address of the constraint that acts for all (0 between steps); whether nothing was solved yet.
-LEADER, FRESH = 9, 10
+LEADER, FRESH = 8, 9
 # Address of a C function (structure's key) called when a joint broke or a step failed, and that key.
-NOTICE, KEY = 11, 12
+NOTICE, KEY = 10, 11
 # Contacts of this step, room for them, those there was no room for, length of the hash table; whether overlap has
 # been taken out in this step.
-CONTACTS, ROOM, MISSED, HASH_LENGTH, PUSHED_APART = 13, 14, 15, 16, 17
+CONTACTS, ROOM, MISSED, HASH_LENGTH, PUSHED_APART = 12, 13, 14, 15, 16
 # Whether any joint has a limit; whether a load pattern acts.
-BREAKABLE, SPREAD = 18, 19
-_FIRST_ADDRESS = 20
+BREAKABLE, SPREAD = 17, 18
+_FIRST_ADDRESS = 19
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

@@ -1,43 +1,67 @@
 """Files of a run, written all or none."""
 
+from __future__ import annotations
+
 import shutil
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from capacity import InputError
+from rich.console import Console
+
+from capacity.errors import InputError
 
 
-def prepare_folder(folder: Path) -> None:
-    """Check that ``folder`` can be written to, before any long work is done.
+class OutputFolder:
+    """Where a command writes its files.
+
+    Parameters
+    ----------
+    path : Path
+        Made when it is written to.
 
     Raises
     ------
     InputError
-        When it cannot.
+        When ``path`` cannot be written to: known before any long work is done.
     """
-    if folder.exists() and not folder.is_dir():
-        raise InputError("-o", f'"{folder}" is a file', "name a folder")
-    nearest = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
-    try:
-        with tempfile.TemporaryFile(dir=nearest):
-            pass
-    except OSError as error:
-        raise InputError("-o", f'"{folder}" cannot be written to', "name a folder of your own") from error
 
+    def __init__(self, path: Path) -> None:
+        if path.exists() and not path.is_dir():
+            raise InputError("-o", f'"{path}" is a file', "name a folder")
+        nearest = next(parent for parent in (path, *path.absolute().parents) if parent.exists())
+        try:
+            with tempfile.TemporaryFile(dir=nearest):
+                pass
+        except OSError as error:
+            raise InputError("-o", f'"{path}" cannot be written to', "name a folder of your own") from error
+        self.path = path
+        self.written: list[str] = []
 
-def write_files(folder: Path, files: Mapping[str, str]) -> None:
-    """Write ``files`` (name to text) into ``folder``, which is made if need be.
+    @classmethod
+    def of_scene(cls, scene: str, path: Path | None) -> OutputFolder:
+        """``path``, or else out/SCENE."""
+        return cls(path or Path("out") / Path(scene).stem)
 
-    They are written beside it first and moved in when all are complete.
-    """
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    staging = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
-    try:
-        for name, text in files.items():
-            (staging / name).write_text(text, encoding="utf-8")
-        folder.mkdir(exist_ok=True)
-        for name in files:
-            (staging / name).replace(folder / name)
-    finally:
-        shutil.rmtree(staging)
+    def write(self, files: Mapping[str, str | bytes]) -> None:
+        """Write ``files`` (name to text or bytes) into the folder.
+
+        They are written beside it first and moved in when all are complete: a run that is stopped leaves none of them
+        half-written.
+        """
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        staging = Path(tempfile.mkdtemp(prefix=f".{self.path.name}-", dir=self.path.parent))
+        try:
+            for name, content in files.items():
+                data = content if isinstance(content, bytes) else content.encode()
+                (staging / name).write_bytes(data)
+            self.path.mkdir(exist_ok=True)
+            for name in files:
+                (staging / name).replace(self.path / name)
+                self.written.append(name)
+        finally:
+            shutil.rmtree(staging)
+
+    def announce(self, console: Console) -> None:
+        """Say on ``console`` what was written and where."""
+        console.print(f"Written to {self.path}: {', '.join(self.written)}", soft_wrap=True)

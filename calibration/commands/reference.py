@@ -1,0 +1,53 @@
+"""``ductile reference``: what the continuum does."""
+
+from __future__ import annotations
+
+import json
+
+from rich.console import Console
+
+from calibration.commands.options import Folder, Json, share
+
+
+def reference(
+    scene: str,
+    /,
+    *,
+    target_error: str = "0.05 %",
+    output: Folder = None,
+    as_json: Json = False,
+    cache: bool = True,
+) -> int:
+    """Follow a push with the elastic–plastic finite-element reference: curve, hinges, energies, and their errors.
+
+    Parameters
+    ----------
+    scene
+        A TOML file, or the name of a built-in scene.
+    target_error
+        Largest estimated error of the load, as a share of the largest load ("0.05 %", "0.001").
+    output
+        Folder for the curve, hinges and sections as CSV and a plot as SVG; out/SCENE by default.
+    as_json
+        Print one JSON object, in SI units, in place of tables.
+    cache
+        Keep results on disk and use them again for the same content.
+    """
+    from calibration.output import OutputFolder
+    from calibration.progress import progress_bar
+    from calibration.reference_command import answer, files, print_answer
+    from scene import load_scene
+
+    target = share(target_error, "--target-error")
+    loaded = load_scene(scene)
+    folder = OutputFolder.of_scene(scene, output)
+    messages = Console(stderr=True)
+    with progress_bar(messages) as watch:
+        found = answer(loaded, target, cache, lambda part: watch("reference", part))
+    folder.write(files(found, loaded.title))
+    if as_json:
+        print(json.dumps(found))
+    else:
+        print_answer(found, Console())
+    folder.announce(messages)
+    return 0 if found["error_estimate"] <= target else 1

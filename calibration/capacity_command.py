@@ -115,7 +115,7 @@ def capacity_values(section: Section, material: Material, criterion: str) -> dic
     solid = all(part.walls is None for part in section.parts)
     ratio = f"{package.shear_ratio(criterion):.4g} fy ({criterion})"
     return {
-        **asdict(result),
+        **result.values(),
         "T_max": package.torsion_capacity(section, material, criterion),
         "curvature_at_yield": result.M_yield / result.EI,
         "material": material.name,

@@ -39,7 +39,7 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
     return {
         "scene": result.name,
         "title": result.scene.title,
-        "capacity": {name: asdict(capacity) for name, capacity in result.capacity.items()},
+        "capacity": {name: capacity.values() for name, capacity in result.capacity.items()},
         "reference": {
             "method": reference.method,
             "displacement": reference.displacement.tolist(),

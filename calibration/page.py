@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-
 from jinja2 import Environment, PackageLoader, select_autoescape
 
 from calibration import figures
@@ -22,7 +20,7 @@ def report_page(result: Calibration) -> str:
         result=result,
         best=result.best,
         settings=settings,
-        capacities={name: asdict(capacity) for name, capacity in result.capacity.items()},
+        capacities={name: capacity.values() for name, capacity in result.capacity.items()},
         table=joint_table(result.scene, result.best.model),
         curves=figures.svg(figures.curves(result)),
         frontier=figures.svg(figures.frontier(result)),

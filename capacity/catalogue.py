@@ -42,8 +42,9 @@ class Entry:
 
 
 def key(text: str) -> str:
-    """A name without its spaces and case, as it is looked up."""
-    return re.sub(r"\s+", "", text).upper().replace("×", "X")
+    """A name without its spaces and case, as it is looked up; ``HE 200 B`` is HEB 200, ``SHS 100x100x5`` SHS 100x5."""
+    plain = re.sub(r"\s+", "", text).upper().replace("×", "X")
+    return re.sub(r"^SHS([\d.]+)X\1X", r"SHS\1X", re.sub(r"^HE(\d+)([ABM])$", r"HE\2\1", plain))
 
 
 @cache

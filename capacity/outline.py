@@ -75,7 +75,10 @@ class Outline:
 
     def shifted(self, dx: float, dy: float) -> Outline:
         """The same outline moved by (dx, dy) [m]."""
-        return Outline(self.point + np.array([dx, dy]), *self._arrays()[1:])
+        by = np.array([dx, dy])
+        moved = Outline(self.point + by, *self._arrays()[1:])
+        vars(moved)["ends"] = tuple(end + by for end in self.ends)  # rather than work them out again
+        return moved
 
     def scaled_weight(self, factor: float) -> Outline:
         """The same outline with every weight multiplied by ``factor``."""
@@ -161,6 +164,8 @@ class Outline:
     @cached_property
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
         """Start and end points of all edges, two of (n, 2) [m]."""
+        if not self.radius.any():
+            return self.point, self.point + self.span
         t = np.tile([0.0, 1.0], (len(self.radius), 1))
         x, y, _ = self.coordinates(np.arange(len(self.radius)), t)
         return np.column_stack([x[:, 0], y[:, 0]]), np.column_stack([x[:, 1], y[:, 1]])
@@ -189,8 +194,9 @@ class Outline:
         x, y, dy = self.coordinates(edge, low[:, None] + width * nodes)
         w = weights * width * dy * self.weight[edge, None] * x
         wx = w * x
-        columns = (w, wx / 2.0, w * y, wx * x / 3.0, wx * y / 2.0, w * y * y)
-        return np.stack([column.sum(axis=1) for column in columns], axis=1)
+        terms = np.stack((w, wx / 2.0, w * y, wx * x / 3.0, wx * y / 2.0, w * y * y))
+        contributions: np.ndarray = np.sum(terms, axis=2).T
+        return contributions
 
     @cached_property
     def _edge_moments(self) -> np.ndarray:

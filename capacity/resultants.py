@@ -7,7 +7,9 @@ The integrals (1)–(3) of Nikula, Mikkola and Björk, *Breakable elastic-plasti
 with τy = fy / 2 (Tresca) or fy / √3 (von Mises).
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from functools import cached_property, partial
 
 from capacity.materials import Material
 from capacity.sections import Section, shear_stiffness
@@ -30,10 +32,12 @@ class Capacity:
         Moment at first yield [N m].
     Q_full_area : float
         Shear force by integral (2), with the whole area [N].
-    EA, GA_s, EI : float
-        Axial [N], shear [N] and bending [N m²] stiffness.
+    EA, EI : float
+        Axial [N] and bending [N m²] stiffness.
     shape_factor : float
         M_max / M_yield [-].
+    shear_stiffness : callable
+        Works out `GA_s` when it is asked for: it takes as long as all the rest.
     """
 
     N_max: float
@@ -42,9 +46,19 @@ class Capacity:
     M_yield: float
     Q_full_area: float
     EA: float
-    GA_s: float
     EI: float
     shape_factor: float
+    shear_stiffness: Callable[[], float] = field(repr=False, compare=False)
+
+    @cached_property
+    def GA_s(self) -> float:
+        """Elastic shear stiffness [N]."""
+        return self.shear_stiffness()
+
+    def values(self) -> dict[str, float]:
+        """Every number by its name."""
+        numbers = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "shear_stiffness"}
+        return {**numbers, "GA_s": self.GA_s}
 
 
 def capacity(section: Section, material: Material, criterion: str = "von-mises") -> Capacity:
@@ -74,10 +88,14 @@ def capacity(section: Section, material: Material, criterion: str = "von-mises")
         M_yield=fy * section.elastic_modulus,
         Q_full_area=tau * fy * section.area,
         EA=material.youngs_modulus * section.area,
-        GA_s=material.shear_modulus * section.shear_area,
         EI=material.youngs_modulus * section.second_moment_of_area,
         shape_factor=section.shape_factor,
+        shear_stiffness=partial(_of_one_material, section, material),
     )
+
+
+def _of_one_material(section: Section, material: Material) -> float:
+    return material.shear_modulus * section.shear_area
 
 
 def _of_several_materials(section: Section, material: Material, tau: float) -> Capacity:
@@ -101,7 +119,7 @@ def _of_several_materials(section: Section, material: Material, tau: float) -> C
         M_yield=M_yield,
         Q_full_area=tau * force,
         EA=area,
-        GA_s=shear_stiffness(elastic, shear),
         EI=EI,
         shape_factor=M_max / M_yield,
+        shear_stiffness=partial(shear_stiffness, elastic, shear),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -30,12 +31,18 @@ def _angle(*sizes: float) -> Section:
     return rolled.section() if rolled else shapes.angle(*sizes)
 
 
+def _square_hollow(a: float, t: float, *more: float) -> Section:
+    """``SHS 100x5 mm``; the side may be said twice, as in ``SHS 100x100x5 mm``."""
+    t, *radii = more if more and t == a else (t, *more)
+    return shapes.rectangular_hollow(a, a, t, *radii)
+
+
 _SHAPES = {
     "rectangle": _Shape((2,), shapes.rectangle, "rectangle 50x100 mm"),
     "circle": _Shape((1,), shapes.circle, "circle 80 mm"),
     "chs": _Shape((2,), shapes.circular_hollow, "CHS 168.3x8 mm"),
     "rhs": _Shape((3, 4, 5), shapes.rectangular_hollow, "RHS 200x100x8 mm", 3),
-    "shs": _Shape((2, 3, 4), lambda a, t, *radii: shapes.rectangular_hollow(a, a, t, *radii), "SHS 100x5 mm", 2),
+    "shs": _Shape((2, 3, 4, 5), _square_hollow, "SHS 100x5 mm", 2),
     "i": _Shape((4, 5), shapes.i_section, "I 300x150x7.1x10.7 mm", 4),
     "mi": _Shape((6, 7), shapes.mono_symmetric_i, "MI 300x150x10x100x8x7 mm", 6),
     "u": _Shape((4, 5, 6), shapes.channel, "U 200x80x6x11 mm", 4),
@@ -186,9 +193,12 @@ def _point(text: str, whole: str, place: str) -> tuple[float, float]:
 
 def _number(part: str, text: str, place: str, cure: str) -> float:
     try:
-        return float(part)
+        value = float(part)
     except ValueError as error:
         raise InputError(place, f'"{text}": "{part}" is not a number', cure) from error
+    if not math.isfinite(value):
+        raise InputError(place, f'"{text}": "{part}" is not a finite number', cure)
+    return value
 
 
 def _suggestion(text: str) -> str:

@@ -162,7 +162,9 @@ class Section:
         """
         ix, iy, ixy = self.second_moments
         mean, half = 0.5 * (ix + iy), math.hypot(0.5 * (ix - iy), ixy)
-        angle = 0.5 * math.atan2(-2.0 * ixy, ix - iy) if half > 1e-12 * mean else 0.0
+        # An angle of rounding errors is none.
+        twist = 0.0 - 2.0 * ixy if abs(ixy) > 1e-14 * mean else 0.0
+        angle = 0.5 * math.atan2(twist, ix - iy) if half > 1e-12 * mean else 0.0
         return mean + half, mean - half, angle
 
     @property

@@ -76,8 +76,17 @@ def test_every_section_can_be_made_and_read_by_its_name() -> None:
         assert section.plastic_modulus > section.elastic_modulus > 0.0
 
 
-@pytest.mark.parametrize(("text", "same"), [("ipe300", "IPE 300"), ("w14X90", "W14x90"), ("SHS100x5", "SHS 100x5")])
-def test_spaces_and_case_do_not_matter(text: str, same: str) -> None:
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ("ipe300", "IPE 300"),
+        ("w14X90", "W14x90"),
+        ("SHS100x5", "SHS 100x5"),
+        ("HE 200 B", "HEB 200"),
+        ("SHS 100x100x5 EN 10219", "SHS 100x5 EN 10219"),
+    ],
+)
+def test_a_name_may_be_written_in_its_usual_ways(text: str, same: str) -> None:
     assert parse_section(text).name == same
 
 

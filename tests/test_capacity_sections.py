@@ -84,6 +84,10 @@ def test_scaling(factor: float, b: float, h: float) -> None:
     assert other.second_moment_of_area == pytest.approx(factor**4 * one.second_moment_of_area)
 
 
+def test_the_side_of_a_square_hollow_section_may_be_said_twice() -> None:
+    assert parse_section("SHS 100x100x5x7.5x5 mm").area == parse_section("SHS 100x5x7.5x5 mm").area
+
+
 @pytest.mark.parametrize(
     ("text", "fault"),
     [
@@ -93,6 +97,7 @@ def test_scaling(factor: float, b: float, h: float) -> None:
         ("rectangle 50 mm", "1 dimensions instead of 2"),
         ("rectangle 50x-100 mm", "not greater than zero"),
         ("rectangle 50x100 kg", "does not fit"),
+        ("rectangle 1e400x100 mm", "not a finite number"),
         ("CHS 100x60 mm", "leaves no hollow"),
         ("RHS 200x100x50 mm", "leaves no hollow"),
         ("I 300x150x7.1x10.7x200 mm", "fillet is too large"),

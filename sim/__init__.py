@@ -8,6 +8,7 @@ from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits
 from sim.laws import ElasticPlastic, FibreSection, Law  # noqa: E402
 from sim.members import Assembly, Model, assemble  # noqa: E402
 from sim.pushover import Push, push_over  # noqa: E402
+from sim.recording import Recorder, Recording  # noqa: E402
 from sim.rules import RULES, Rule, equal, lobatto  # noqa: E402
 from sim.structure import SolverError, Structure  # noqa: E402
 
@@ -23,6 +24,8 @@ __all__ = [
     "Limits",
     "Model",
     "Push",
+    "Recorder",
+    "Recording",
     "Rule",
     "SolverError",
     "Structure",

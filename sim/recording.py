@@ -1,0 +1,216 @@
+"""Recording a run: watching a space, and keeping what it shows at times an even distance apart."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pymunk
+
+from sim.joint import DuctileJoint
+from sim.kernels import layout as at
+from sim.recorded import BodyKind, Contacts, Outline, RecordedBody, RecordedJoint, Recording
+from sim.structure import Structure
+
+__all__ = ["Recorder", "Recording"]
+
+# Share of a step by which a time may be missed and still count as reached.
+_ROUNDING = 1e-6
+_KINDS: dict[int, BodyKind] = {
+    pymunk.Body.STATIC: "static",
+    pymunk.Body.KINEMATIC: "kinematic",
+    pymunk.Body.DYNAMIC: "dynamic",
+}
+
+
+@dataclass(frozen=True)
+class _Sample:
+    """One moment: x, y, angle, v_x, v_y of each body known by then; N, Q, M, share used, broken of each joint."""
+
+    time: float
+    motion: np.ndarray
+    state: np.ndarray
+    contacts: np.ndarray
+    energy: dict[str, float]
+
+
+class Recorder:
+    """Watches a space and samples it.
+
+    Bodies, shapes and joints are found by themselves, also those that are added or removed during the run.
+
+    Parameters
+    ----------
+    space : pymunk.Space
+        As it is before its first step; that moment is the first sample.
+    every : float
+        Simulated time between two samples [s]; when steps are longer, every step is one.
+    labels : mapping from DuctileJoint to str, optional
+        What to call joints; others are called by where they were made.
+
+    Raises
+    ------
+    ValueError
+        When ``every`` is not a positive number.
+    """
+
+    def __init__(
+        self, space: pymunk.Space, every: float = 1.0 / 30.0, labels: Mapping[DuctileJoint, str] | None = None
+    ) -> None:
+        if not (math.isfinite(every) and every > 0.0):
+            raise ValueError(f"a sample every {every} s: name a positive time")
+        self._space, self._every = space, every
+        self._labels = dict(labels or {})
+        self._now = 0.0
+        # Dictionaries for their order: what was seen first comes first.
+        self._bodies: dict[pymunk.Body, tuple[Outline, ...]] = {}
+        self._joints: dict[DuctileJoint, None] = {}
+        self._peaks: dict[Structure, np.ndarray] = {}
+        self._samples: list[_Sample] = []
+        self._keep()
+
+    def sample(self) -> None:
+        """Note what a step of the space has done; to be called after each."""
+        step = self._space.current_time_step
+        periods_before = math.floor(self._now / self._every + _ROUNDING)
+        self._now += step
+        self._note_forces()
+        if math.floor((self._now + _ROUNDING * step) / self._every) > periods_before:
+            self._keep()
+
+    def finish(self, title: str = "") -> Recording:
+        """Everything that was sampled, up to the last step."""
+        if self._samples[-1].time < self._now:
+            self._keep()
+        samples, bodies, joints = self._samples, list(self._bodies), list(self._joints)
+        index = {body: i for i, body in enumerate(bodies)}
+        held = {body for joint in joints for body in (joint.a, joint.b)}
+        motion = _stacked([sample.motion for sample in samples], len(bodies), math.nan)
+        state = _stacked([sample.state for sample in samples], len(joints), 0.0)
+        touching = np.concatenate([sample.contacts for sample in samples])
+        return Recording(
+            title=title,
+            time=np.array([sample.time for sample in samples]),
+            settings={
+                "step": self._space.current_time_step,
+                "gravity": self._space.gravity.y,
+                "iterations": float(self._space.iterations),
+            },
+            bodies=tuple(
+                RecordedBody(_KINDS[body.body_type], outlines, body in held) for body, outlines in self._bodies.items()
+            ),
+            pose=motion[:, :, :3],
+            velocity=motion[:, :, 3:],
+            joints=tuple(self._described(i, joint, index) for i, joint in enumerate(joints)),
+            force=state[:, :, :3],
+            capacity_used=state[:, :, 3],
+            broken=state[:, :, 4].astype(bool),
+            peak=self._peak_of_joints(),
+            contacts=Contacts(
+                start=np.cumsum([0, *(len(sample.contacts) for sample in samples)]),
+                point=touching[:, :2],
+                force=touching[:, 2:],
+            ),
+            energy={key: np.array([sample.energy.get(key, 0.0) for sample in samples]) for key in samples[-1].energy},
+        )
+
+    def _note_forces(self) -> None:
+        """Find new joints and structures, and keep the largest forces."""
+        for constraint in self._space.constraints:
+            if isinstance(constraint, DuctileJoint):
+                self._joints.setdefault(constraint)
+        for structure in {joint.structure for joint in self._joints}:
+            if structure is not None:
+                peak = self._peaks.setdefault(structure, np.zeros((len(structure.joints), 3)))
+                np.maximum(peak, np.abs(structure.force), out=peak)
+
+    def _peak_of_joints(self) -> np.ndarray:
+        index = {joint: i for i, joint in enumerate(self._joints)}
+        peaks = np.zeros((len(index), 3))
+        for structure, peak in self._peaks.items():
+            rows = [index[joint] for joint in structure.joints]
+            peaks[rows] = np.maximum(peaks[rows], peak)
+        return peaks
+
+    def _keep(self) -> None:
+        """Keep the present moment."""
+        space = self._space
+        for body in (space.static_body, *space.bodies):
+            if body not in self._bodies:
+                self._bodies[body] = tuple(_outline(shape) for shape in body.shapes)
+        self._note_forces()
+        present = {space.static_body, *space.bodies}
+        holding = set(space.constraints)
+        motion = [
+            (*body.position, body.angle, *body.velocity) if body in present else (math.nan,) * 5
+            for body in self._bodies
+        ]
+        state = [
+            (*(joint.force if joint in holding else (0.0,) * 3), joint.capacity_used, float(joint.broken))
+            for joint in self._joints
+        ]
+        moving = [body for body in self._bodies if body in present and body.body_type == pymunk.Body.DYNAMIC]
+        contacts = _touching(moving, space.current_time_step) if self._now > 0.0 else []
+        self._samples.append(
+            _Sample(
+                time=self._now,
+                motion=np.array(motion, dtype=float).reshape(-1, 5),
+                state=np.array(state, dtype=float).reshape(-1, 5),
+                contacts=np.array(contacts, dtype=float).reshape(-1, 4),
+                energy={},
+            )
+        )
+
+    def _described(self, i: int, joint: DuctileJoint, index: Mapping[pymunk.Body, int]) -> RecordedJoint:
+        geometry = joint.geometry
+        anchors = [
+            np.array(geometry[first : first + 2]) + body.center_of_gravity
+            for body, first in ((joint.a, at.ANCHOR_A), (joint.b, at.ANCHOR_B))
+        ]
+        n, q, m = joint.law.capacities()
+        x, y = joint.at
+        return RecordedJoint(
+            label=self._labels.get(joint, f"joint {i + 1} ({x:.4g} m, {y:.4g} m)"),
+            bodies=(index[joint.a], index[joint.b]),
+            anchors=np.array(anchors),
+            rest=(geometry[at.REST_A], geometry[at.REST_B]),
+            turn=geometry[at.TURN],
+            maxima=(float(n), float(q), float(m)),
+        )
+
+
+def _outline(shape: pymunk.Shape) -> Outline:
+    if isinstance(shape, pymunk.Circle):
+        return Outline("circle", np.array([shape.offset]), shape.radius)
+    if isinstance(shape, pymunk.Segment):
+        return Outline("segment", np.array([shape.a, shape.b]), shape.radius)
+    assert isinstance(shape, pymunk.Poly)
+    return Outline("polygon", np.array(shape.get_vertices()), shape.radius)
+
+
+def _touching(bodies: Iterable[pymunk.Body], step: float) -> list[tuple[float, float, float, float]]:
+    """Middle of every pair of shapes in touch, and the force on the body that comes first."""
+    found: dict[frozenset[pymunk.Shape], tuple[float, float, float, float]] = {}
+
+    def note(arbiter: pymunk.Arbiter) -> None:  # told of each pair as the body at hand meets it
+        pair = frozenset(arbiter.shapes)
+        points = arbiter.contact_point_set.points
+        if pair in found or not points:
+            return
+        x, y = sum((point.point_a + point.point_b for point in points), pymunk.Vec2d.zero()) / (2 * len(points))
+        force = arbiter.total_impulse / step
+        found[pair] = (x, y, force.x, force.y)
+
+    for body in bodies:
+        body.each_arbiter(note)
+    return list(found.values())
+
+
+def _stacked(samples: list[np.ndarray], count: int, absent: float) -> np.ndarray:
+    """Samples one after the other, the earlier ones filled up for what was not there yet."""
+    whole = np.full((len(samples), count, samples[0].shape[1]), absent)
+    for k, sample in enumerate(samples):
+        whole[k, : len(sample)] = sample
+    return whole

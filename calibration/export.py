@@ -91,7 +91,7 @@ def joint_table(scene: Scene, model: Model, name: str = "") -> dict[str, Any]:
     Bodies have mass, moment of inertia, position, and angle; joints say which bodies they hold (``"ground"`` for the
     world), where, in which direction, and by what law. An unlimited capacity is null.
     """
-    assembly = assemble(scene, model)
+    assembly = assemble(scene, model, shapes=False)
     names = {assembly.space.static_body: "ground"}
     counts: dict[str, int] = {}
     for piece in assembly.pieces:
@@ -99,8 +99,6 @@ def joint_table(scene: Scene, model: Model, name: str = "") -> dict[str, Any]:
         names[piece.body] = f"{piece.member}.{counts[piece.member]}"
     for body in assembly.space.bodies:
         names.setdefault(body, f"node.{len(names)}")
-    del names[assembly.pusher]
-    joints = assembly.structure.joints[:-1]  # the last one is the pusher's
     spans = {piece.body: (piece.start, piece.end) for piece in assembly.pieces}
     return {
         "format": "ductile-joints/1",
@@ -111,7 +109,7 @@ def joint_table(scene: Scene, model: Model, name: str = "") -> dict[str, Any]:
         "bodies": [_body(body, label, spans.get(body)) for body, label in names.items() if label != "ground"],
         "joints": [
             {**_joint(joint, names), **_place(assembly.places[i] if i < len(assembly.places) else None)}
-            for i, joint in enumerate(joints)
+            for i, joint in enumerate(assembly.joints)
         ],
         "versions": versions(),
     }

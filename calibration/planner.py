@@ -1,6 +1,6 @@
 """Which models to try, from cheap to dear."""
 
-from sim.members import Model
+from sim import Model
 
 # A hinge at each joint knows no gradual yielding, and more joints do not teach it.
 _HINGES = (3, 5, 8)

@@ -6,7 +6,8 @@ chipmunk.verify()
 
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits  # noqa: E402  (nothing may run on structs that do not fit)
 from sim.laws import ElasticPlastic, FibreSection, Law  # noqa: E402
-from sim.members import Assembly, Model, assemble  # noqa: E402
+from sim.members import Assembly, assemble  # noqa: E402
+from sim.model import Model  # noqa: E402
 from sim.pushover import Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
 from sim.rules import RULES, Rule, equal, lobatto  # noqa: E402

@@ -130,6 +130,12 @@ class DuctileJoint(pymunk.Constraint):
         self._structure, self._index = structure, index
         self.pre_solve = None
 
+    def point_on(self, body: pymunk.Body) -> tuple[float, float]:
+        """Where the joint is now, as a point that moves with ``body``, one of its two [m]."""
+        ax, ay, bx, by = self.geometry[:4]
+        x, y = body.local_to_world(body.center_of_gravity + ((ax, ay) if body is self.a else (bx, by)))
+        return x, y
+
     @property
     def structure(self) -> Structure | None:
         """The structure that the joint is solved with; None before the first step."""

@@ -1,0 +1,40 @@
+"""How a scene is turned into rigid bodies, and how these are stepped."""
+
+from dataclasses import dataclass
+
+from sim.joint import IMPLICIT_EULER
+
+
+@dataclass(frozen=True)
+class Model:
+    """Where the joints of a member go, by what law they give way, and how they are stepped.
+
+    Attributes
+    ----------
+    rule : str
+        ``"lobatto"`` or ``"equal"``: where the joints of a member go.
+    joints : int
+        Points of the rule in each member; the one at a free end needs no joint.
+    law : str
+        A key of `sim.member_laws.LAWS`.
+    fibres : int
+        Fibres a section, for the fibre law; at least 4.
+    dt : float
+        Step [s].
+    iterations : int
+        Iterations of Chipmunk's solver in a step.
+    damping : float
+        Viscous damping of every joint as a share of its stiffness [s]: a vibration at ω has the damping ratio
+        ω · damping / 2.
+    scheme : (float, float)
+        β and δ of the time integration.
+    """
+
+    rule: str
+    joints: int
+    law: str
+    fibres: int = 8
+    dt: float = 1.0 / 60.0
+    iterations: int = 2
+    damping: float = 0.0
+    scheme: tuple[float, float] = IMPLICIT_EULER

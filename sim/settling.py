@@ -1,0 +1,42 @@
+"""A scene at rest under what bears on it all the time."""
+
+from __future__ import annotations
+
+from scene import Scene
+from sim.members import Assembly
+from sim.structure import SolverError
+
+#: Step while a scene settles [s]; long, for the longer it is the more it damps.
+SETTLING_STEP = 1.0 / 60.0
+# Weight and dead loads grow over so many steps: applied at once they would bear down with twice their size.
+_LOADING_STEPS = 120
+_MOST_STEPS = 10_000
+
+
+def settle(scene: Scene, assembly: Assembly, rest: float) -> None:
+    """Let ``assembly`` come to rest under own weight, dead loads and settlements.
+
+    Parameters
+    ----------
+    scene : Scene
+    assembly : Assembly
+        Of that scene.
+    rest : float
+        Way per step that counts as rest [m].
+
+    Raises
+    ------
+    SolverError
+        When it does not come to rest.
+    """
+    settles = any(node.settlement != (0.0, 0.0) for node in scene.nodes.values())
+    if scene.gravity == 0.0 and not assembly.dead_loads and not settles:
+        return
+    for k in range(_MOST_STEPS):
+        share = min(1.0, (k + 1) / _LOADING_STEPS)
+        assembly.space.gravity = (0.0, -share * scene.gravity)
+        assembly.step(SETTLING_STEP, share)
+        speed = max(body.velocity.length for body in assembly.structure.bodies)
+        if share == 1.0 and speed * SETTLING_STEP < rest:
+            return
+    raise SolverError("the scene does not come to rest under its own weight; support it, or make it stronger")

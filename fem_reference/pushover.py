@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -12,6 +11,7 @@ import numpy as np
 from fem_reference.frame import Frame
 from fem_reference.frame_mesh import build_frame, control_vector
 from fem_reference.hinge_events import HingeEvent, hinge_events
+from fem_reference.legs import even_legs, resolved_legs
 from fem_reference.member_results import MemberResult, member_results
 from fem_reference.paths import State, Trace, trace
 from scene import Scene
@@ -127,9 +127,10 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
     """
     started = time.perf_counter()
     elements, fibres = _COARSEST
-    legs = _even_legs(scene)
+    stops = scene.push.stops()
+    legs = even_legs(stops, POINTS if len(stops) == 1 else POINTS_A_LEG)
     first = _solve(scene, elements, fibres, legs, watch)
-    legs = _resolved_legs(scene, legs, first.trace)
+    legs = resolved_legs(stops, legs, np.array(first.trace.load))
     coarse = _solve(scene, elements, fibres, legs, watch)
     for _ in range(_MOST_REFINEMENTS):
         elements, fibres = 2 * elements, 2 * fibres
@@ -178,43 +179,6 @@ def _solve(scene: Scene, elements: int, fibres: int, legs: list[np.ndarray], wat
     control = control_vector(scene, frame.node_dofs, frame.size)
     path, state = trace(frame, control, legs, scene.push.unload, watch)
     return _Solved(frame, path, state, hinge_events(frame, scene, path))
-
-
-def _even_legs(scene: Scene) -> list[np.ndarray]:
-    stops = (0.0, *scene.push.stops())
-    points = POINTS if len(stops) == 2 else POINTS_A_LEG
-    return [np.linspace(a, b, points + 1)[1:] for a, b in itertools.pairwise(stops)]
-
-
-def _resolved_legs(scene: Scene, legs: list[np.ndarray], path: Trace) -> list[np.ndarray]:
-    """Legs with points closer where the curve bends, where a first path got through them all."""
-    resolved: list[np.ndarray] = []
-    first = 0
-    stops = (0.0, *scene.push.stops())
-    for start, leg in zip(stops, legs, strict=False):
-        load = np.array(path.load[first : first + len(leg) + 1])
-        first += len(leg)
-        if len(load) <= len(leg):
-            resolved.append(leg)
-            continue
-        sign = np.sign(leg[-1] - start)
-        resolved.append(start + sign * _resolved(sign * (np.append(start, leg) - start), load)[1:])
-        resolved[-1][-1] = leg[-1]
-    return resolved
-
-
-def _resolved(distance: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """As many distances again, closer where the curve bends, so that straight lines between them follow it.
-
-    The error of a chord is h² |F''| / 8, so steps go with |F''|^(-1/2); half of the points are spread evenly.
-    """
-    bend = np.abs(np.gradient(np.gradient(load, distance), distance))
-    density = np.sqrt(np.convolve(bend, np.full(5, 0.2), mode="same"))
-    density = density / np.trapezoid(density, distance) + 1.0 / distance[-1]
-    steps = 0.5 * (density[1:] + density[:-1]) * np.diff(distance)
-    share = np.append(0.0, np.cumsum(steps))
-    resolved: np.ndarray = np.interp(np.linspace(0.0, share[-1], len(distance)), share, distance)
-    return resolved
 
 
 def _difference(fine: list[float], coarse: list[float]) -> float:

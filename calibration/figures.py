@@ -11,16 +11,16 @@ from matplotlib.ticker import StrMethodFormatter
 
 from calibration.tuning import Calibration
 
-_INK, _REFERENCE, _MODEL, _FAINT = "#22303c", "#1f6fb2", "#d1495b", "#9aa5b1"
-_STYLE = {
+INK, REFERENCE, MODEL, FAINT = "#22303c", "#1f6fb2", "#d1495b", "#9aa5b1"
+STYLE = {
     "svg.hashsalt": "ductile-joints",
     "svg.fonttype": "none",
     "font.family": "sans-serif",
     "font.size": 10,
-    "axes.edgecolor": _INK,
-    "axes.labelcolor": _INK,
-    "xtick.color": _INK,
-    "ytick.color": _INK,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
@@ -32,20 +32,20 @@ _STYLE = {
 def curves(result: Calibration) -> Figure:
     """Both load–deflection curves, and below them by how much they differ."""
     reference, push = result.reference, result.best.push
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.6), layout="constrained")
         top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         top.plot(
-            1e3 * reference.displacement, 1e-3 * reference.load, color=_REFERENCE, lw=2.5, label="reference (fibre FEM)"
+            1e3 * reference.displacement, 1e-3 * reference.load, color=REFERENCE, lw=2.5, label="reference (fibre FEM)"
         )
         label = f"{push.bodies} rigid bodies, {push.joints} joints"
-        top.plot(1e3 * push.displacement, 1e-3 * push.load, color=_MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
+        top.plot(1e3 * push.displacement, 1e-3 * push.load, color=MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
         top.set_ylabel("load [kN]")
         top.legend(loc="lower right")
         difference = np.interp(reference.displacement, push.displacement, push.load) - reference.load
         share = 100.0 * difference / np.abs(reference.load).max()
         bottom.axhspan(-100.0 * result.target_error, 100.0 * result.target_error, color="#e9f3ec", lw=0)
-        bottom.plot(1e3 * reference.displacement, share, color=_MODEL, lw=1.4)
+        bottom.plot(1e3 * reference.displacement, share, color=MODEL, lw=1.4)
         bottom.set_ylim(-150.0 * result.target_error, 150.0 * result.target_error)
         if np.abs(share).max() > 150.0 * result.target_error:
             bottom.set_ylim(auto=True)
@@ -56,7 +56,7 @@ def curves(result: Calibration) -> Figure:
 
 def frontier(result: Calibration) -> Figure:
     """Path error of every model tried against what a simulated second of it costs."""
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.2), layout="constrained")
         axes = figure.subplots()
         groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
@@ -64,16 +64,14 @@ def frontier(result: Calibration) -> Figure:
             point = (1e3 * trial.push.seconds_per_simulated_second, 100.0 * trial.errors.path_max)
             groups.setdefault((trial.model.rule, trial.model.law), []).append(point)
         markers = {"lobatto": "o", "equal": "s"}
-        colours = {"elastic-plastic": _FAINT, "fibre": _MODEL}
+        colours = {"elastic-plastic": FAINT, "fibre": MODEL}
         for (rule, law), points in sorted(groups.items()):
             cost, error = zip(*points, strict=True)
             axes.scatter(cost, error, s=26, marker=markers[rule], color=colours[law], label=f"{rule}, {law}")
         best = result.best
         chosen = (1e3 * best.push.seconds_per_simulated_second, 100.0 * best.errors.path_max)
-        axes.scatter(
-            [chosen[0]], [chosen[1]], s=120, facecolors="none", edgecolors=_INK, linewidths=1.4, label="chosen"
-        )
-        axes.axhline(100.0 * result.target_error, color=_INK, lw=1.0, ls=(0, (4, 2)))
+        axes.scatter([chosen[0]], [chosen[1]], s=120, facecolors="none", edgecolors=INK, linewidths=1.4, label="chosen")
+        axes.axhline(100.0 * result.target_error, color=INK, lw=1.0, ls=(0, (4, 2)))
         axes.annotate(
             "target", (1.0, 100.0 * result.target_error), xycoords=("axes fraction", "data"), ha="right", va="bottom"
         )
@@ -91,7 +89,7 @@ def frontier(result: Calibration) -> Figure:
 def svg(figure: Figure) -> str:
     """The figure as an ``<svg>`` element, the same text for the same numbers."""
     text = io.StringIO()
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(STYLE):
         figure.savefig(text, format="svg", metadata={"Date": None})
     whole = text.getvalue()
     return whole[whole.index("<svg") :]

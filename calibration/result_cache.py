@@ -7,6 +7,7 @@ import importlib.util
 import json
 import os
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,17 +15,18 @@ import platformdirs
 
 from scene import Scene
 
-_PACKAGES = ("capacity", "scene", "fem_reference")
+#: What a reference's answer follows from.
+REFERENCE_CODE = ("capacity", "scene", "fem_reference")
 
 
-def content_key(scene: Scene, *settings: object) -> str:
-    """A digest of ``scene``, ``settings`` and the code that answers; whatever changes an answer changes it."""
+def content_key(scene: Scene, *settings: object, packages: Sequence[str] = REFERENCE_CODE) -> str:
+    """A digest of ``scene``, ``settings`` and the ``packages`` that answer; whatever changes an answer changes it."""
     digest = hashlib.sha256(repr((scene, settings)).encode())
     for member in scene.members.values():
         fibres = member.section.fibres(24)
         digest.update(fibres.y.tobytes() + fibres.area.tobytes())
         digest.update(repr(sorted(vars(member.material).items())).encode())
-    for package in _PACKAGES:
+    for package in packages:
         spec = importlib.util.find_spec(package)
         for folder in (spec.submodule_search_locations if spec else None) or ():
             for path in sorted(Path(folder).rglob("*.py")):

@@ -1,0 +1,215 @@
+// The picture: bodies to scale, joints, contacts, the reference's shape.
+
+const FORCE_KINDS = ["N", "Q", "M"];
+
+class Stage {
+  constructor(canvas, recording, palette) {
+    Object.assign(this, { canvas, recording, palette });
+    this.camera = new Camera(canvas);
+    this.bounds = this.extent();
+    this.structureSize = this.sizeOfStructure();
+    this.forces = new ForceDrawing(recording, this.structureSize);
+    this.showReference = true;
+  }
+
+  resize() {
+    const ratio = window.devicePixelRatio || 1;
+    this.canvas.width = Math.round(this.canvas.clientWidth * ratio);
+    this.canvas.height = Math.round(this.canvas.clientHeight * ratio);
+    if (this.camera.fitted) this.fit();
+  }
+
+  fit() { this.camera.fit(this.bounds); }
+
+  // Rectangle around all that moves or is joined; what stands still is background and may reach far beyond.
+  extent() {
+    const { recording } = this, box = [Infinity, Infinity, -Infinity, -Infinity];
+    const include = ([x, y], r = 0) => {
+      box[0] = Math.min(box[0], x - r); box[1] = Math.min(box[1], y - r);
+      box[2] = Math.max(box[2], x + r); box[3] = Math.max(box[3], y + r);
+    };
+    const every = Math.max(1, Math.floor(recording.time.length / 60));
+    const reach = recording.bodies.map((body) => Math.max(0, ...body.outlines.flatMap((outline) =>
+      outline.points.map(([x, y]) => Math.hypot(x, y) + outline.radius))));
+    for (let k = 0; k < recording.time.length; k += every) {
+      const moment = { k, next: k, share: 0 };
+      recording.bodies.forEach((body, i) => {
+        const pose = body.kind === "static" ? null : recording.pose(i, moment);
+        if (pose) include(pose, reach[i]);
+      });
+      recording.joints.forEach((_, j) => {
+        const place = recording.place(j, moment);
+        if (place) { include(place.a); include(place.b); }
+      });
+    }
+    if (!Number.isFinite(box[0])) {
+      for (const body of recording.bodies) for (const outline of body.outlines) outline.points.forEach((p) => include(p));
+    }
+    return Number.isFinite(box[0]) ? box : [-1, -1, 1, 1];
+  }
+
+  // Diagonal around the joints at the start [m].
+  sizeOfStructure() {
+    const start = { k: 0, next: 0, share: 0 };
+    const places = this.recording.joints.map((_, j) => this.recording.place(j, start)).filter(Boolean);
+    if (places.length === 0) return 1;
+    const span = (i) => Math.max(...places.map((p) => p.a[i])) - Math.min(...places.map((p) => p.a[i]));
+    return Math.hypot(span(0), span(1)) || 0.3 * Math.hypot(this.bounds[2] - this.bounds[0], this.bounds[3] - this.bounds[1]);
+  }
+
+  draw(moment, chosen) {
+    const { canvas, recording, palette, camera } = this;
+    const ratio = window.devicePixelRatio || 1, pen = canvas.getContext("2d");
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, camera.width, camera.height);
+    pen.lineJoin = pen.lineCap = "round";
+    const places = recording.joints.map((_, j) => recording.place(j, moment));
+    recording.bodies.forEach((body, i) => this.drawBody(pen, body, i, moment));
+    this.forces.draw(pen, camera, palette, moment, places);
+    if (this.showReference && recording.reference) this.drawReference(pen, moment);
+    places.forEach((place, j) => place && this.drawJoint(pen, j, place, moment, chosen.indexOf(j)));
+    pen.globalAlpha = 1;
+  }
+
+  drawBody(pen, body, i, moment) {
+    const { recording, palette, camera } = this, pose = recording.pose(i, moment);
+    if (!pose) return;
+    pen.fillStyle = body.kind === "static" ? palette.still : body.inStructure ? palette.piece : palette.loose;
+    pen.strokeStyle = body.kind === "static" ? palette.soft : palette.edge;
+    pen.lineWidth = 1;
+    if (body.outlines.length === 0 && body.kind !== "static") this.drawStick(pen, i, pose);
+    for (const { kind, points, radius } of body.outlines) {
+      const corners = points.map((point) => camera.toScreen(toWorld(pose, point)));
+      const r = radius * camera.scale;
+      pen.beginPath();
+      if (kind === "circle") {
+        pen.arc(...corners[0], Math.max(r, 0.5), 0, 2 * Math.PI);
+        pen.fill();
+        pen.stroke();
+        pen.beginPath();
+        pen.moveTo(...corners[0]);
+        pen.lineTo(corners[0][0] + r * Math.cos(pose[2]), corners[0][1] - r * Math.sin(pose[2]));
+        pen.stroke();
+        continue;
+      }
+      corners.forEach((corner, k) => (k ? pen.lineTo(...corner) : pen.moveTo(...corner)));
+      if (kind === "segment") {
+        pen.save();
+        pen.lineWidth = Math.max(2 * r, 1.5);
+        pen.strokeStyle = pen.fillStyle;
+        pen.stroke();
+        pen.restore();
+      } else {
+        pen.closePath();
+        pen.fill();
+        if (r > 0.5) { pen.save(); pen.lineWidth = 2 * r; pen.strokeStyle = pen.fillStyle; pen.stroke(); pen.restore(); }
+        else pen.stroke();
+      }
+    }
+  }
+
+  // A body without a shape: from its middle to each of its joints.
+  drawStick(pen, i, pose) {
+    const { recording, camera } = this, middle = camera.toScreen(pose);
+    pen.save();
+    pen.lineWidth = 3;
+    pen.strokeStyle = pen.fillStyle;
+    for (const j of recording.jointsOf[i]) {
+      const { bodies, anchors } = recording.joints[j];
+      pen.beginPath();
+      pen.moveTo(...middle);
+      pen.lineTo(...camera.toScreen(toWorld(pose, anchors[bodies.indexOf(i)])));
+      pen.stroke();
+    }
+    pen.restore();
+  }
+
+  drawReference(pen, { time }) {
+    const { lines, time: times } = this.recording.reference;
+    let moment = 0;
+    if (times) moment = Math.max(0, times.findLastIndex((t) => t <= time));
+    pen.save();
+    pen.strokeStyle = this.palette.reference;
+    pen.lineWidth = 1.5;
+    pen.setLineDash([6, 4]);
+    for (const line of lines) {
+      pen.beginPath();
+      line[moment].forEach((point, k) => (k ? pen.lineTo(...this.camera.toScreen(point)) : pen.moveTo(...this.camera.toScreen(point))));
+      pen.stroke();
+    }
+    pen.restore();
+  }
+
+  // Radius of a joint's mark: smaller where joints stand close on the screen.
+  get jointRadius() {
+    const apart = this.camera.scale * this.structureSize / Math.max(1, this.recording.joints.length);
+    return Math.min(6, Math.max(2.5, 0.3 * apart));
+  }
+
+  drawJoint(pen, j, { a, b }, { k }, chosen) {
+    const { recording, palette, camera } = this, r = this.jointRadius;
+    const [x, y] = camera.toScreen(a);
+    pen.lineWidth = 1;
+    if (recording.broken(j, k)) {
+      const half = 0.9 * r + 1.5;
+      pen.strokeStyle = palette.bad;
+      pen.lineWidth = 2.2;
+      for (const [px, py] of [[x, y], camera.toScreen(b)]) {
+        pen.beginPath();
+        pen.moveTo(px - half, py - half); pen.lineTo(px + half, py + half);
+        pen.moveTo(px + half, py - half); pen.lineTo(px - half, py + half);
+        pen.stroke();
+      }
+    } else {
+      pen.beginPath();
+      pen.arc(x, y, r, 0, 2 * Math.PI);
+      pen.fillStyle = palette.utilisation(recording.utilisation(j, k));
+      pen.strokeStyle = palette.edge;
+      pen.fill();
+      pen.stroke();
+      const used = recording.used(j, k);
+      if (used > 0.001) {
+        pen.beginPath();
+        pen.arc(x, y, r + 2.5, -Math.PI / 2, (-0.5 + 2 * used) * Math.PI);
+        pen.strokeStyle = palette.used;
+        pen.lineWidth = 2;
+        pen.stroke();
+      }
+    }
+    if (chosen >= 0) {
+      pen.beginPath();
+      pen.arc(x, y, r + 6, 0, 2 * Math.PI);
+      pen.strokeStyle = CHOSEN[chosen];
+      pen.lineWidth = 2.5;
+      pen.stroke();
+      badge(pen, x + r + 13, y - r - 13, chosen);
+    }
+  }
+
+  // The joint nearest to a point of the screen, or null when none is within reach.
+  jointAt([x, y], moment, reach) {
+    let nearest = null, best = reach;
+    this.recording.joints.forEach((_, j) => {
+      const place = this.recording.place(j, moment);
+      if (!place) return;
+      for (const end of [place.a, place.b]) {
+        const [px, py] = this.camera.toScreen(end), distance = Math.hypot(px - x, py - y);
+        if (distance < best) { nearest = j; best = distance; }
+      }
+    });
+    return nearest;
+  }
+}
+
+// A chosen joint's number on a disc of its colour.
+function badge(pen, x, y, chosen) {
+  pen.beginPath();
+  pen.arc(x, y, 8, 0, 2 * Math.PI);
+  pen.fillStyle = CHOSEN[chosen];
+  pen.fill();
+  pen.fillStyle = "#fff";
+  pen.font = "600 10px system-ui, sans-serif";
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  pen.fillText(String(chosen + 1), x, y + 0.5);
+}

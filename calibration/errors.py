@@ -30,7 +30,7 @@ class Errors:
 def compare(reference: Pushover, push: Push) -> Errors:
     """Errors of ``push`` at the points of ``reference``, whose displacements were the pusher's distances."""
     points = np.arange(len(reference.load))
-    load = np.interp(points, push.progress, push.load)
+    load = push.load_at_distances
     largest = float(np.abs(reference.load).max())
     early = points < np.argmax(np.abs(reference.load) > 0.3 * largest)
     return Errors(

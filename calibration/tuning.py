@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from calibration.errors import Errors, compare
 from calibration.planner import candidates
+from calibration.small_displacements import push_over_small
 from capacity import Capacity
 from fem_reference import Pushover, pushover
 from scene import Scene
@@ -107,14 +108,16 @@ def calibrate(
     tolerance = min(target_error / REFERENCE_MARGIN, REFERENCE_TOLERANCE)
     reference = pushover(scene, tolerance, lambda share: watch("reference", share))
     models = candidates()
+    small = scene.kinematics == "small"
+    push_by = push_over_small if small else push_over
     # The first model in a process also pays for loading the kernels; that is no part of its cost.
-    push_over(scene, models[0], reference.displacement)
+    push_by(scene, models[0], reference.displacement)
     trials: list[Trial] = []
     failures: list[Failure] = []
     for i, model in enumerate(models):
         watch(f"model {i + 1}: {model.rule} {model.joints}, {model.law}", i / len(models))
         try:
-            push = push_over(scene, model, reference.displacement)
+            push = push_by(scene, model, reference.displacement)
         except SolverError as error:
             failures.append(Failure(model, str(error)))
             continue

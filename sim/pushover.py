@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -32,8 +33,8 @@ class Push:
         Displacement of the pushed node along the push after each step [m], from 0.
     load : (k,) float
         Force on it along the push [N].
-    progress : (k,) float
-        How far along the given distances the node had come: 2.5 is halfway between the third and the fourth [-].
+    load_at_distances : (n,) float
+        Load at each of the distances that were given, where the node itself passed it [N].
     bodies, joints : int
         Dynamic bodies, and joints of the members.
     steps : int
@@ -52,7 +53,7 @@ class Push:
 
     displacement: np.ndarray
     load: np.ndarray
-    progress: np.ndarray
+    load_at_distances: np.ndarray
     bodies: int
     joints: int
     steps: int
@@ -88,8 +89,8 @@ def push_over(
     scene : Scene
     model : Model
     distances : (k,) float
-        Distances of the pusher one after the other, from 0 [m]; each gets an equal share of the time, the first
-        ones a larger one; every way from one turn to the next takes `DURATION`.
+        Distances of the pusher one after the other, from 0 [m]; each gets about an equal share of the time, those at
+        a turn a larger one; every way from one turn to the next takes `DURATION`.
     watch : callable
         Told the finished share of the push, 0 to 1.
 
@@ -105,17 +106,18 @@ def push_over(
     assembly = assemble(scene, model, shapes=False)
     settle(scene, assembly, 1e-9 * scene.push.way())
     structure, node = assembly.structure, assembly.nodes[scene.push.node]
-    turns = 1 + int(np.count_nonzero(np.diff(np.sign(np.diff(distances)))))
-    steps = max(1, round(turns * DURATION / model.dt))
-    progress = _eased(steps) * (len(distances) - 1)
-    travel = np.interp(progress, np.arange(len(distances)), distances)
+    turns = [0, *(1 + np.flatnonzero(np.diff(np.sign(np.diff(distances))))).tolist(), len(distances) - 1]
+    legs = [distances[a : b + 1] for a, b in itertools.pairwise(turns)]
+    steps_a_leg = max(1, round(DURATION / model.dt))
+    steps = steps_a_leg * len(legs)
+    travel = np.concatenate([_eased(leg, steps_a_leg) for leg in legs])
     loads = assembly.pattern or (BodyLoad(node.body, scene.push_direction(), 0.0, node.point),)
     driver = LoadDriver(structure, loads, node, scene.push_direction())
     newton_before = structure.newton_steps
     displacement, load = np.empty(steps), np.empty(steps)
     seconds = 0.0
     for k in range(steps):
-        driver.aim(travel[k + 1], model.dt)
+        driver.aim(travel[k], model.dt)
         started = time.perf_counter()
         assembly.step(model.dt)
         seconds += time.perf_counter() - started
@@ -123,12 +125,15 @@ def push_over(
         displacement[k], load[k] = driver.displacement, driver.factor
         if k % 64 == 0:
             watch(k / steps)
-    # Where the node was, not where it was wanted; on a way that turns, though, one place is passed more than once.
-    passed = np.interp(displacement, distances, np.arange(len(distances))) if turns == 1 else progress[1:]
+    displacement, load = np.append(0.0, displacement), np.append(0.0, load)
+    passed = [load[:1]]
+    for i, leg in enumerate(legs):
+        part = slice(i * steps_a_leg, (i + 1) * steps_a_leg + 1)
+        passed.append(_passed(leg, displacement[part], load[part]))
     return Push(
-        displacement=np.append(0.0, displacement),
-        load=np.append(0.0, load),
-        progress=np.append(0.0, passed),
+        displacement=displacement,
+        load=load,
+        load_at_distances=np.concatenate(passed),
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
         joints=len(assembly.places),
         steps=steps,
@@ -140,9 +145,16 @@ def push_over(
     )
 
 
-def _eased(steps: int) -> np.ndarray:
-    """Share of the way at each step, (steps + 1,): even, but for a start without a jerk."""
-    time = np.linspace(0.0, 1.0, steps + 1)
-    way = np.where(time < _EASE, time**2 / (2.0 * _EASE), time - 0.5 * _EASE)
-    share: np.ndarray = way / way[-1]
-    return share
+def _eased(leg: np.ndarray, steps: int) -> np.ndarray:
+    """Distances after each of ``steps`` through those of ``leg``, with speeds averaged so that nothing jerks."""
+    window = min(steps, max(1, round(_EASE * steps)))
+    speeds = np.diff(np.interp(np.linspace(0.0, len(leg) - 1.0, steps - window + 2), np.arange(len(leg)), leg))
+    way: np.ndarray = leg[0] + np.cumsum(np.convolve(speeds, np.full(window, 1.0 / window)))
+    return way
+
+
+def _passed(leg: np.ndarray, displacement: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Loads at the distances of ``leg`` but its first, from those at the displacements that the node took."""
+    way = 1.0 if leg[-1] >= leg[0] else -1.0
+    passed: np.ndarray = np.interp(way * leg[1:], np.maximum.accumulate(way * displacement), load)
+    return passed

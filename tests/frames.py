@@ -1,6 +1,7 @@
 """The beams and frames of the reference cases, as scenes."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from scene import Scene, parse_scene
 
@@ -8,7 +9,12 @@ STEEL = "fy=235 MPa, E=210 GPa, rho=7850 kg/m^3"
 IPE300 = "I 300x150x7.1x10.7 mm"  # without root radius, as in the cases
 
 
-def frame_scene(
+def frame_scene(*args: Any, **options: Any) -> Scene:
+    """The scene of `frame_text`."""
+    return parse_scene(frame_text(*args, **options), "test")
+
+
+def frame_text(
     nodes: Mapping[str, tuple[float, float, str]],
     members: Sequence[tuple[str, str]],
     push: str,
@@ -17,7 +23,7 @@ def frame_scene(
     material: str = STEEL,
     kinematics: str = "small",
     extra: str = "",
-) -> Scene:
+) -> str:
     """A weightless frame of one section; members are named "a-b" after their nodes, loads are bodies of [[loads]]."""
     lines = ['title = "test"', "gravity = 0.0", f'kinematics = "{kinematics}"']
     for name, (x, y, support) in nodes.items():
@@ -27,8 +33,7 @@ def frame_scene(
         lines += [f'material = "{material}"', 'theory = "euler-bernoulli"']
     for load in loads:
         lines += ["[[loads]]", load]
-    lines += [push, extra]
-    return parse_scene("\n".join(lines), "test")
+    return "\n".join([*lines, push, extra])
 
 
 def push_down(node: str, distance: float) -> str:

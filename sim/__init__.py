@@ -5,28 +5,32 @@ from sim import chipmunk
 chipmunk.verify()
 
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits  # noqa: E402  (nothing may run on structs that do not fit)
-from sim.laws import ElasticPlastic, FibreSection, Law  # noqa: E402
+from sim.laws import ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic  # noqa: E402
+from sim.member_laws import LAWS  # noqa: E402
 from sim.members import Assembly, assemble  # noqa: E402
 from sim.model import Model  # noqa: E402
 from sim.pushover import Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
-from sim.rules import RULES, Rule, equal, lobatto  # noqa: E402
+from sim.rules import RULES, Rule, equal, lobatto, radau  # noqa: E402
 from sim.structure import SolverError, Structure  # noqa: E402
 
 __all__ = [
     "AVERAGE_ACCELERATION",
     "IMPLICIT_EULER",
+    "LAWS",
     "RULES",
     "Assembly",
     "DuctileJoint",
     "ElasticPlastic",
     "FibreSection",
+    "InteractionPlastic",
     "Law",
     "Limits",
     "Model",
     "Push",
     "Recorder",
     "Recording",
+    "RigidPlastic",
     "Rule",
     "SolverError",
     "Structure",
@@ -34,4 +38,5 @@ __all__ = [
     "equal",
     "lobatto",
     "push_over",
+    "radau",
 ]

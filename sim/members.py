@@ -13,10 +13,10 @@ from scene import MemberEnd, Node, Scene
 from sim.body_loads import BodyLoad, body_loads
 from sim.joint import DuctileJoint, Limits
 from sim.laws import ElasticPlastic
-from sim.member_laws import joint_law
+from sim.member_laws import MemberLaws
 from sim.model import Model
 from sim.pieces import NodePoint, Piece, Pieces
-from sim.rules import RULES
+from sim.rules import Rule, member_rule
 from sim.shapes import keep_neighbours_apart
 from sim.structure import Structure
 
@@ -96,16 +96,17 @@ def assemble(
     Raises
     ------
     ValueError
-        When ``model`` names an unknown rule or law.
+        When ``model`` names an unknown rule or law, or too few joints.
+    InputError
+        When its hinges are too long for a member.
     """
-    if model.rule not in RULES:
-        raise ValueError(f'there is no rule "{model.rule}"; the rules are {", ".join(RULES)}')
+    laws = MemberLaws(scene, model)
+    rules = {name: _rule(scene, name, model) for name in scene.members}
     if space is None:
         space = pymunk.Space()
         space.iterations = model.iterations
         space.gravity = (0.0, -scene.gravity)
-    rule = RULES[model.rule](model.joints)
-    builder = _Builder(scene, model, limits or {}, Pieces(scene, dict.fromkeys(scene.members, rule), space))
+    builder = _Builder(scene, model, laws, limits or {}, Pieces(scene, rules, space))
     for name in scene.members:
         builder.join(name)
     for name, body in builder.pieces.at_node.items():
@@ -128,11 +129,21 @@ def assemble(
     )
 
 
+def _rule(scene: Scene, name: str, model: Model) -> Rule:
+    hinge = model.hinge_length
+    if hinge is None:
+        low, high = scene.members[name].section.outline.extent()
+        hinge = high - low
+    return member_rule(model.rule, model.joints, hinge, name, scene.axis(name)[2])
+
+
 class _Builder:
     """The joints of `assemble`."""
 
-    def __init__(self, scene: Scene, model: Model, limits: Mapping[str, Limits], pieces: Pieces) -> None:
-        self.scene, self.model, self.limits, self.pieces = scene, model, limits, pieces
+    def __init__(
+        self, scene: Scene, model: Model, laws: MemberLaws, limits: Mapping[str, Limits], pieces: Pieces
+    ) -> None:
+        self.scene, self.model, self.laws, self.limits, self.pieces = scene, model, laws, limits, pieces
         self.ground = pieces.space.static_body
         self.places: list[JointPlace] = []
         self.joints: list[DuctileJoint] = []
@@ -150,7 +161,7 @@ class _Builder:
             position, share = float(rule.points[i] * length), float(rule.weights[i] * length)
             first, last = i == 0, i == len(chain) - 2
             pinned = (first and self._is_hinge(name, "from")) or (last and self._is_hinge(name, "to"))
-            law = joint_law(self.scene, name, share, self.model, pinned)
+            law = self.laws.joint(name, share, pinned=pinned, elastic=bool(rule.elastic[i]))
             at = (x0 + c * position, y0 + s * position)
             k = law.elastic_tangent()
             joint = DuctileJoint(

@@ -12,11 +12,11 @@ class Model:
     Attributes
     ----------
     rule : str
-        ``"lobatto"`` or ``"equal"``: where the joints of a member go.
+        A name in `sim.rules.RULES`: where the joints of a member go.
     joints : int
         Points of the rule in each member; the one at a free end needs no joint.
     law : str
-        A key of `sim.member_laws.LAWS`.
+        A name in `sim.member_laws.LAWS`.
     fibres : int
         Fibres a section, for the fibre law; at least 4.
     dt : float
@@ -28,6 +28,8 @@ class Model:
         ω · damping / 2.
     scheme : (float, float)
         β and δ of the time integration.
+    hinge_length : float, optional
+        Length of the hinges of the rule ``"radau"`` [m]; by default the depth of each member's section.
     """
 
     rule: str
@@ -38,3 +40,4 @@ class Model:
     iterations: int = 2
     damping: float = 0.0
     scheme: tuple[float, float] = IMPLICIT_EULER
+    hinge_length: float | None = None

@@ -13,9 +13,17 @@ SECTIONS = {
 
 
 def cantilever(
-    section: str, length: float, distance: float, gravity: float = 0.0, theory: str = "euler-bernoulli"
+    section: str,
+    length: float,
+    distance: float,
+    gravity: float = 0.0,
+    theory: str = "euler-bernoulli",
+    hardening: float = 0.0,
 ) -> Scene:
-    """A clamped steel cantilever (fy 235 MPa, E 210 GPa) along x, pushed down at its tip; SI."""
+    """A clamped steel cantilever (fy 235 MPa, E 210 GPa) along x, pushed down at its tip; SI.
+
+    ``hardening`` is E_t / E.
+    """
     return parse_scene(
         f"""
         title = "test cantilever"
@@ -29,7 +37,7 @@ def cantilever(
         from = "root"
         to = "tip"
         section = "{section}"
-        material = "fy=235 MPa, E=210 GPa, rho=7850 kg/m^3"
+        material = "fy=235 MPa, E=210 GPa, rho=7850 kg/m^3, Et={210.0 * hardening!r} GPa"
         theory = "{theory}"
         [push]
         node = "tip"

@@ -8,6 +8,7 @@ from conftest import CASES
 from frames import fixed_fixed, frame_scene, portal, propped, push_down, two_spans
 
 import sim
+from capacity import Interaction
 from scene import Scene
 from sim import Model
 
@@ -76,6 +77,23 @@ def test_axial_force_lowers_the_path_and_p_delta_follows_from_the_geometry(row: 
     loads = loads_at(scene, distances, Model("lobatto", 9, "fibre", 24, dt=1 / 240))
     expected = np.array(case["P_PDelta_N"])
     np.testing.assert_allclose(loads, expected, atol=0.01 * expected.max())
+
+
+@pytest.mark.parametrize("row", [0, 1, 2])
+def test_interacting_hinges_fold_at_the_exact_moment_beside_an_axial_force(row: int) -> None:
+    """C4-rect: M_pl,N / M_p = 1 - n², with the axial force's moment on the sunk tip; within 0.2 % of (N, M) together."""
+    outputs = CASES["C4-rect"]["outputs"]
+    case, dy, squash = outputs["rows"][row], outputs["delta_y_m_no_axial"], 1175e3
+    distance = 2.0 * dy
+    nodes = {"A": (0.0, 0.0, "clamped"), "T": (1.0, 0.0, "free")}
+    axial = f'node = "T"\nforce = [{-case["n"] * squash!r}, 0.0]\nkind = "dead"'
+    scene = frame_scene(nodes, [("A", "T")], push_down("T", distance), [axial], section="rectangle 50x100 mm")
+    push = sim.push_over(scene, Model("lobatto", 6, "interaction", dt=1 / 240), np.linspace(0.0, distance, 101))
+    assert push.unconverged == 0
+    reached = push.load[-1] + case["n"] * squash * push.displacement[-1]
+    exact = Interaction(scene.members["A-T"].section, scene.members["A-T"].material)
+    assert exact.moments_at(case["n"] * squash)[1] == pytest.approx(case["M_plN_Nm"], rel=1e-9)
+    assert exact.load_factor(-case["n"] * squash, 0.0, reached) == pytest.approx(1.0, abs=2e-3)
 
 
 def test_springs_releases_settlements_and_masses() -> None:

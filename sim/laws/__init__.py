@@ -10,6 +10,8 @@ import numpy as np
 
 from sim.laws.elastic_plastic import ElasticPlastic
 from sim.laws.fibre import FibreSection
+from sim.laws.interaction import InteractionPlastic
+from sim.laws.rigid_plastic import RigidPlastic
 
 
 class Law(Protocol):
@@ -22,6 +24,8 @@ class Law(Protocol):
     """
 
     name: str
+    #: What gives way when N, Q or M yields: their names, or that of what they share.
+    yields_by: tuple[str, str, str]
     respond_address: int
     commit_address: int
 
@@ -38,4 +42,4 @@ class Law(Protocol):
         """Upper triangle of ∂s/∂q while elastic, row by row; no tangent of the law may exceed it."""
 
 
-__all__ = ["ElasticPlastic", "FibreSection", "Law"]
+__all__ = ["ElasticPlastic", "FibreSection", "InteractionPlastic", "Law", "RigidPlastic"]

@@ -60,6 +60,7 @@ class ElasticPlastic:
     capacity: tuple[float, float, float]
 
     name = "elastic-plastic"
+    yields_by = ("N", "Q", "M")
     respond_address = respond.address
     commit_address = commit.address
 

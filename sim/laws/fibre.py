@@ -110,6 +110,7 @@ class FibreSection:
     shear_capacity: float
 
     name = "fibre"
+    yields_by = ("fibres", "Q", "fibres")
     respond_address = respond.address
     commit_address = commit.address
 

@@ -1,0 +1,75 @@
+"""Rigid–plastic joint with N, Q and M capped one by one: nothing moves that can be seen until a cap is reached.
+
+It is the elastic–plastic law with a stiffness so high that a joint yields after a hundredth of a millimetre, or a tenth
+of a millimetre a metre. Without any compliance the solver's matrix would not exist; with a tenth of this one, pieces of
+a few centimetres in steps of 1/60 s are at the end of what double precision resolves.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from capacity import Capacity
+from sim.laws.elastic_plastic import commit, respond
+
+#: Extension, slip and rotation at which a joint yields [m, m, rad].
+INVISIBLE = (1e-5, 1e-5, 1e-4)
+
+
+@dataclass(frozen=True)
+class RigidPlastic:
+    """The law above.
+
+    Parameters
+    ----------
+    capacity : (float, float, float)
+        N_max [N], Q_max [N], M_max [N m]; without limit where infinite, 0 where nothing is borne.
+
+    Raises
+    ------
+    ValueError
+        When none is finite and positive, for then nothing says what is stiff.
+    """
+
+    capacity: tuple[float, float, float]
+
+    name = "rigid-plastic"
+    yields_by = ("N", "Q", "M")
+    respond_address = respond.address
+    commit_address = commit.address
+
+    def __post_init__(self) -> None:
+        if not any(0.0 < cap < math.inf for cap in self.capacity) or min(self.capacity) < 0.0:
+            raise ValueError(f"capacities {self.capacity}: a rigid–plastic joint needs one that is finite and positive")
+
+    @classmethod
+    def of_section(cls, section: Capacity) -> RigidPlastic:
+        """A joint that bears what a section bears."""
+        return cls((section.N_max, section.Q_max, section.M_max))
+
+    @property
+    def stiffness(self) -> tuple[float, float, float]:
+        """Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness that stand for none."""
+        most = max(cap for cap in self.capacity if cap < math.inf)
+        N, Q, M = (min(cap, most) / reach for cap, reach in zip(self.capacity, INVISIBLE, strict=True))
+        return N, Q, M
+
+    def capacities(self) -> tuple[float, float, float]:
+        """N_max [N], Q_max [N] and M_max [N m]."""
+        return self.capacity
+
+    def parameters(self) -> np.ndarray:
+        """Parameters as they lie in memory."""
+        return np.array([*self.stiffness, *self.capacity])
+
+    def state(self) -> np.ndarray:
+        """State of a new joint as it lies in memory."""
+        return np.zeros(3)
+
+    def elastic_tangent(self) -> tuple[float, float, float, float, float, float]:
+        """Upper triangle of ∂s/∂q while nothing yields, row by row."""
+        k = self.stiffness
+        return k[0], 0.0, 0.0, k[1], 0.0, k[2]

@@ -81,7 +81,7 @@ def test_axial_force_lowers_the_path_and_p_delta_follows_from_the_geometry(row: 
 
 @pytest.mark.parametrize("row", [0, 1, 2])
 def test_interacting_hinges_fold_at_the_exact_moment_beside_an_axial_force(row: int) -> None:
-    """C4-rect: M_pl,N / M_p = 1 - n², with the axial force's moment on the sunk tip; within 0.2 % of (N, M) together."""
+    """C4-rect: M_pl,N / M_p = 1 - n², with the axial force's moment on the sunk tip; to 0.2 % of both."""
     outputs = CASES["C4-rect"]["outputs"]
     case, dy, squash = outputs["rows"][row], outputs["delta_y_m_no_axial"], 1175e3
     distance = 2.0 * dy

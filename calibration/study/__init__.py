@@ -1,0 +1,1 @@
+"""Speed against error: every way to model a scene, measured."""

@@ -142,14 +142,9 @@ class Recorder:
                 self._bodies[body] = tuple(_outline(shape) for shape in body.shapes)
         self._note_forces()
         present = {space.static_body, *space.bodies}
-        holding = set(space.constraints)
         motion = [
             (*body.position, body.angle, *body.velocity) if body in present else (math.nan,) * 5
             for body in self._bodies
-        ]
-        state = [
-            (*(joint.force if joint in holding else (0.0,) * 3), joint.capacity_used, float(joint.broken))
-            for joint in self._joints
         ]
         moving = [body for body in self._bodies if body in present and body.body_type == pymunk.Body.DYNAMIC]
         contacts = _touching(moving, space.current_time_step) if self._now > 0.0 else []
@@ -157,11 +152,26 @@ class Recorder:
             _Sample(
                 time=self._now,
                 motion=np.array(motion, dtype=float).reshape(-1, 5),
-                state=np.array(state, dtype=float).reshape(-1, 5),
+                state=self._state(),
                 contacts=np.array(contacts, dtype=float).reshape(-1, 4),
                 energy={},
             )
         )
+
+    def _state(self) -> np.ndarray:
+        """N, Q, M, share of capacity used, broken (1 or 0) of each joint; no force in one that was taken out."""
+        holding = set(self._space.constraints)
+        of = {}
+        for structure in self._peaks:
+            broken = (structure.capacity_used >= 1.0) & ~structure.active
+            force = np.where(broken[:, None], 0.0, structure.force)
+            of[structure] = np.column_stack([force, structure.capacity_used, broken])
+        state = np.zeros((len(self._joints), 5))
+        for row, joint in zip(state, self._joints, strict=True):
+            if joint.structure is not None:
+                row[:] = of[joint.structure][joint.index]
+                row[:3] *= joint in holding
+        return state
 
     def _described(self, i: int, joint: DuctileJoint, index: Mapping[pymunk.Body, int]) -> RecordedJoint:
         geometry = joint.geometry

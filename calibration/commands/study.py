@@ -100,7 +100,7 @@ def study(
         try:
             sweep(keys, partial(measure, loaded, reference), hired, journal, one_more)
         except KeyboardInterrupt:
-            kept = sum(key in journal.results for key in keys)
+            kept = len(keys.keys() & Journal(folder.path).results.keys())
             messages.print(f"Stopped: {kept} of {len(points)} points are in {journal.path}; run it again to go on")
             raise
         watch("drawing", 1.0)

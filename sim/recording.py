@@ -9,13 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 
+from sim import chipmunk
 from sim.joint import DuctileJoint
+from sim.joint_watch import BROKEN, FORCE, USED, JointWatch
 from sim.kernels import layout as at
 from sim.recorded import BodyKind, Contacts, Outline, RecordedBody, RecordedJoint, Recording
-from sim.structure import Structure
 
 __all__ = ["Recorder", "Recording"]
 
+# x, y, angle and velocity in a body's memory.
+_MOTION = [chipmunk.ORIGIN, chipmunk.ORIGIN + 1, chipmunk.ANGLE, chipmunk.VX, chipmunk.VY]
 # Share of a step by which a time may be missed and still count as reached.
 _ROUNDING = 1e-6
 _KINDS: dict[int, BodyKind] = {
@@ -34,6 +37,28 @@ class _Sample:
     state: np.ndarray
     contacts: np.ndarray
     energy: dict[str, float]
+
+
+class _Seen:
+    """A body: its shapes when it was first seen, and its memory, for reading many bodies often.
+
+    Attributes
+    ----------
+    outlines : tuple of Outline
+    fields : (words,) float
+        Chipmunk's own.
+    """
+
+    def __init__(self, body: pymunk.Body) -> None:
+        self.outlines = tuple(_outline(shape) for shape in body.shapes)
+        location = chipmunk.body_address(body)
+        self.fields = chipmunk.words(location, chipmunk.BODY_FULL_WORDS)
+        self._lists = chipmunk.words(location, chipmunk.BODY_FULL_WORDS, np.int64)
+
+    @property
+    def touches(self) -> bool:
+        """Whether another body is in touch."""
+        return bool(self._lists[chipmunk.ARBITERS])
 
 
 class Recorder:
@@ -64,11 +89,11 @@ class Recorder:
         self._space, self._every = space, every
         self._labels = dict(labels or {})
         self._now = 0.0
-        # Dictionaries for their order: what was seen first comes first.
-        self._bodies: dict[pymunk.Body, tuple[Outline, ...]] = {}
-        self._joints: dict[DuctileJoint, None] = {}
-        self._peaks: dict[Structure, np.ndarray] = {}
+        # In the order in which they were first seen.
+        self._bodies: dict[pymunk.Body, _Seen] = {}
+        self._joints = JointWatch(space)
         self._samples: list[_Sample] = []
+        self._joints.note()
         self._keep()
 
     def sample(self) -> None:
@@ -76,7 +101,7 @@ class Recorder:
         step = self._space.current_time_step
         periods_before = math.floor(self._now / self._every + _ROUNDING)
         self._now += step
-        self._note_forces()
+        self._joints.note()
         if math.floor((self._now + _ROUNDING * step) / self._every) > periods_before:
             self._keep()
 
@@ -84,7 +109,7 @@ class Recorder:
         """Everything that was sampled, up to the last step."""
         if self._samples[-1].time < self._now:
             self._keep()
-        samples, bodies, joints = self._samples, list(self._bodies), list(self._joints)
+        samples, bodies, joints = self._samples, list(self._bodies), self._joints.joints
         index = {body: i for i, body in enumerate(bodies)}
         held = {body for joint in joints for body in (joint.a, joint.b)}
         motion = _stacked([sample.motion for sample in samples], len(bodies), math.nan)
@@ -99,15 +124,15 @@ class Recorder:
                 "iterations": float(self._space.iterations),
             },
             bodies=tuple(
-                RecordedBody(_KINDS[body.body_type], outlines, body in held) for body, outlines in self._bodies.items()
+                RecordedBody(_KINDS[body.body_type], seen.outlines, body in held) for body, seen in self._bodies.items()
             ),
             pose=motion[:, :, :3],
             velocity=motion[:, :, 3:],
             joints=tuple(self._described(i, joint, index) for i, joint in enumerate(joints)),
-            force=state[:, :, :3],
-            capacity_used=state[:, :, 3],
-            broken=state[:, :, 4].astype(bool),
-            peak=self._peak_of_joints(),
+            force=state[:, :, FORCE],
+            capacity_used=state[:, :, USED],
+            broken=state[:, :, BROKEN].astype(bool),
+            peak=self._joints.peak,
             contacts=Contacts(
                 start=np.cumsum([0, *(len(sample.contacts) for sample in samples)]),
                 point=touching[:, :2],
@@ -116,62 +141,27 @@ class Recorder:
             energy={key: np.array([sample.energy.get(key, 0.0) for sample in samples]) for key in samples[-1].energy},
         )
 
-    def _note_forces(self) -> None:
-        """Find new joints and structures, and keep the largest forces."""
-        for constraint in self._space.constraints:
-            if isinstance(constraint, DuctileJoint):
-                self._joints.setdefault(constraint)
-        for structure in {joint.structure for joint in self._joints}:
-            if structure is not None:
-                peak = self._peaks.setdefault(structure, np.zeros((len(structure.joints), 3)))
-                np.maximum(peak, np.abs(structure.force), out=peak)
-
-    def _peak_of_joints(self) -> np.ndarray:
-        index = {joint: i for i, joint in enumerate(self._joints)}
-        peaks = np.zeros((len(index), 3))
-        for structure, peak in self._peaks.items():
-            rows = [index[joint] for joint in structure.joints]
-            peaks[rows] = np.maximum(peaks[rows], peak)
-        return peaks
-
     def _keep(self) -> None:
         """Keep the present moment."""
         space = self._space
-        for body in (space.static_body, *space.bodies):
+        present = dict.fromkeys((space.static_body, *space.bodies))
+        for body in present:
             if body not in self._bodies:
-                self._bodies[body] = tuple(_outline(shape) for shape in body.shapes)
-        self._note_forces()
-        present = {space.static_body, *space.bodies}
-        motion = [
-            (*body.position, body.angle, *body.velocity) if body in present else (math.nan,) * 5
-            for body in self._bodies
-        ]
-        moving = [body for body in self._bodies if body in present and body.body_type == pymunk.Body.DYNAMIC]
-        contacts = _touching(moving, space.current_time_step) if self._now > 0.0 else []
+                self._bodies[body] = _Seen(body)
+        there = [(body, seen) for body, seen in self._bodies.items() if body in present]
+        motion = np.full((len(self._bodies), 5), math.nan)
+        motion[[body in present for body in self._bodies]] = [seen.fields[_MOTION] for _, seen in there]
+        touched = [body for body, seen in there if body.body_type == pymunk.Body.DYNAMIC and seen.touches]
+        contacts = _touching(touched, space.current_time_step) if self._now > 0.0 else []
         self._samples.append(
             _Sample(
                 time=self._now,
-                motion=np.array(motion, dtype=float).reshape(-1, 5),
-                state=self._state(),
+                motion=motion,
+                state=self._joints.state(),
                 contacts=np.array(contacts, dtype=float).reshape(-1, 4),
                 energy={},
             )
         )
-
-    def _state(self) -> np.ndarray:
-        """N, Q, M, share of capacity used, broken (1 or 0) of each joint; no force in one that was taken out."""
-        holding = set(self._space.constraints)
-        of = {}
-        for structure in self._peaks:
-            broken = (structure.capacity_used >= 1.0) & ~structure.active
-            force = np.where(broken[:, None], 0.0, structure.force)
-            of[structure] = np.column_stack([force, structure.capacity_used, broken])
-        state = np.zeros((len(self._joints), 5))
-        for row, joint in zip(state, self._joints, strict=True):
-            if joint.structure is not None:
-                row[:] = of[joint.structure][joint.index]
-                row[:3] *= joint in holding
-        return state
 
     def _described(self, i: int, joint: DuctileJoint, index: Mapping[pymunk.Body, int]) -> RecordedJoint:
         geometry = joint.geometry

@@ -1,0 +1,66 @@
+"""Watching all ductile joints of a space: what they bear now, and the most they bore."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+
+from sim.joint import DuctileJoint
+from sim.structure import Structure
+
+#: Columns of `JointWatch.state`: N, Q, M, share of the plastic capacity used, 1 when broken.
+FORCE, USED, BROKEN = slice(0, 3), 3, 4
+
+
+class JointWatch:
+    """Joints of a space in the order in which they were first seen.
+
+    Attributes
+    ----------
+    joints : list of DuctileJoint
+    peak : (n, 3) float
+        Largest N, Q [N] and M [N m] in any step, without sign.
+    """
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self._space = space
+        self.joints: list[DuctileJoint] = []
+        self.peak = np.zeros((0, 3))
+        self._state = np.zeros((0, 5))
+        self._row: dict[DuctileJoint, int] = {}
+        self._rows: dict[Structure, np.ndarray] = {}
+        self._present: list[int] = []
+
+    def note(self) -> None:
+        """Take note of a step."""
+        present = [constraint for constraint in self._space.constraints if isinstance(constraint, DuctileJoint)]
+        for joint in present:
+            if joint not in self._row:
+                self._row[joint] = len(self.joints)
+                self.joints.append(joint)
+        new = len(self.joints) - len(self.peak)
+        self.peak, self._state = (np.pad(array, ((0, new), (0, 0))) for array in (self.peak, self._state))
+        self._present = [self._row[joint] for joint in present]
+        current = dict.fromkeys(joint.structure for joint in present)
+        # A structure that is no more is read a last time, for the step in which it broke; what has passed on to
+        # another is then read from that.
+        for past in [structure for structure in self._rows if structure not in current]:
+            self._read(past)
+            del self._rows[past]
+        for structure in current:
+            if structure is not None:
+                self._rows.setdefault(structure, np.array([self._row[joint] for joint in structure.joints]))
+                self._read(structure)
+
+    def state(self) -> np.ndarray:
+        """What each joint bears, (n, 5); no force in one that was taken out of the space."""
+        state = self._state.copy()
+        gone = np.ones(len(state), dtype=bool)
+        gone[self._present] = False
+        state[gone, FORCE] = 0.0
+        return state
+
+    def _read(self, structure: Structure) -> None:
+        rows, force, used = self._rows[structure], structure.force, structure.capacity_used
+        self.peak[rows] = np.maximum(self.peak[rows], np.abs(force))
+        self._state[rows] = np.column_stack([force, used, (used >= 1.0) & ~structure.active])

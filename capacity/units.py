@@ -50,6 +50,7 @@ QUANTITIES = {
     "speed": ("m/s", "10 m/s"),
     "acceleration": ("m/s**2", "9.81 m/s^2"),
     "angle": ("rad", "0.1 rad"),
+    "angular speed": ("rad/s", "-40 rad/s"),
     "frequency": ("Hz", "2 Hz"),
     "stiffness": ("N/m", "1e6 N/m"),
     "rotational stiffness": ("N*m/rad", "2 MN m/rad"),

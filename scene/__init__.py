@@ -1,4 +1,4 @@
-"""What is there: nodes, members, supports and what happens to them; read from TOML.
+"""What is there: nodes, members, supports, loose bodies, and what happens to them; read from TOML.
 
 Signs, for the whole project
 ----------------------------
@@ -16,20 +16,37 @@ joint from a to b are u = extension along x, v = slip along y, θ = rotation of 
 """
 
 from scene.actions import Load, LoadKind, Motion, Push
+from scene.bodies import GROUND, Body, Box, Circle, Ground, Joint, Polygon, Shape
 from scene.checks import check
 from scene.model import HELD, Member, MemberEnd, Node, Scene
+from scene.programme import Measure, Simulation
 from scene.reading import builtin_names, builtin_text, load_scene, parse_scene
+from scene.simulation_checks import ALL_JOINTS
+from scene.vehicles import Vehicle, Wheel
 
 __all__ = [
+    "ALL_JOINTS",
+    "GROUND",
     "HELD",
+    "Body",
+    "Box",
+    "Circle",
+    "Ground",
+    "Joint",
     "Load",
     "LoadKind",
+    "Measure",
     "Member",
     "MemberEnd",
     "Motion",
     "Node",
+    "Polygon",
     "Push",
     "Scene",
+    "Shape",
+    "Simulation",
+    "Vehicle",
+    "Wheel",
     "builtin_names",
     "builtin_text",
     "check",

@@ -10,7 +10,7 @@ import msgspec
 
 from scene.quantities import Duration, Force, ForcePerLength, Length, Moment, Speed
 
-LoadKind = Literal["dead", "proportional", "step"]
+LoadKind = Literal["dead", "proportional", "step", "history"]
 
 
 class Load(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -30,7 +30,10 @@ class Load(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         Force per length of the member [N/m].
     kind : str
         ``"proportional"``: multiplied by the load factor of the push; ``"dead"``: applied first, and kept;
-        ``"step"``: applied suddenly when a motion begins, and kept.
+        ``"step"``: applied suddenly when a motion begins, and kept; ``"history"``: multiplied by ``history``.
+    history : tuple of (Duration, float)
+        Times [s] and factors between which the factor runs straight; the first and the last are kept before and
+        after.
     """
 
     node: str | None = None
@@ -39,6 +42,7 @@ class Load(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     member: str | None = None
     per_length: tuple[ForcePerLength, ForcePerLength] = (ForcePerLength(0.0), ForcePerLength(0.0))
     kind: LoadKind = "proportional"
+    history: tuple[tuple[Duration, float], ...] = ()
 
 
 class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

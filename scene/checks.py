@@ -8,6 +8,7 @@ import math
 from capacity import InputError
 from scene.actions import Load, Motion, Push
 from scene.model import Scene
+from scene.simulation_checks import check_simulation
 
 
 def check(scene: Scene) -> Scene:
@@ -17,15 +18,15 @@ def check(scene: Scene) -> Scene:
     ------
     InputError
         When a name is unknown, a member has no length, nothing is supported, a load is nowhere or nothing, the push
-        goes nowhere, or a motion has no cause.
+        goes nowhere, a motion has no cause, or a body has no mass.
     """
     _check_members(scene)
     for name, node in scene.nodes.items():
         _check_node(scene, name)
         if node.spring is not None and min(node.spring) < 0.0:
             raise InputError(f"nodes.{name}.spring", "a stiffness is negative", "write 0 where there is no spring")
-    if scene.pushed is None and scene.motion is None:
-        raise InputError("push", "nothing happens in the scene", "add a table [push] or [motion]")
+    if scene.pushed is None and scene.motion is None and scene.simulation is None:
+        raise InputError("push", "nothing happens in the scene", "add a table [push], [motion] or [simulation]")
     if scene.pushed is not None and scene.motion is not None:
         raise InputError("motion", "the scene has a push, too", "keep one of [push] and [motion]")
     for i, load in enumerate(scene.loads):
@@ -34,13 +35,18 @@ def check(scene: Scene) -> Scene:
         _check_push(scene, scene.pushed)
     if scene.motion is not None:
         _check_motion(scene, scene.motion)
-    elif not any(any(node.held) or node.spring is not None for node in scene.nodes.values()):
+    elif scene.pushed is not None and not _is_supported(scene):
         raise InputError("nodes", "nothing is supported", 'give a node support = "clamped"')
+    check_simulation(scene)
     return scene
 
 
+def _is_supported(scene: Scene) -> bool:
+    return any(any(node.held) or node.spring is not None for node in scene.nodes.values())
+
+
 def _check_members(scene: Scene) -> None:
-    if not scene.members:
+    if not scene.members and (scene.pushed is not None or scene.motion is not None):
         raise InputError("members", "there is no member", "add a table such as [members.beam]")
     for name, member in scene.members.items():
         for key, node in (("from", member.start), ("to", member.end)):
@@ -94,10 +100,26 @@ def _check_load(scene: Scene, load: Load, place: str) -> None:
             raise InputError(place, "force and moment act on nodes", "write per_length = [qx, qy], or name a node")
         if not any(load.per_length):
             raise InputError(place, "the load is zero", 'write per_length = ["0 N/m", "-5 kN/m"]')
-    if scene.motion is not None and load.kind == "proportional":
-        raise InputError(f"{place}.kind", "a motion has no load factor", 'write kind = "step" or kind = "dead"')
-    if scene.motion is None and load.kind == "step":
+    if scene.pushed is None and load.kind == "proportional":
+        raise InputError(
+            f"{place}.kind", "there is no load factor without a push", 'write kind = "step" or kind = "dead"'
+        )
+    if scene.pushed is not None and load.kind == "step":
         raise InputError(f"{place}.kind", "nothing is sudden in a push", 'write kind = "dead", or add a table [motion]')
+    _check_history(scene, load, place)
+
+
+def _check_history(scene: Scene, load: Load, place: str) -> None:
+    if (load.kind == "history") != bool(load.history):
+        cure = 'write kind = "history" and history = [["0 s", 0.0], ["1 s", 1.0]]'
+        raise InputError(f"{place}.history", "kind and history do not go together", cure)
+    if load.kind == "history" and (scene.pushed is not None or scene.motion is not None):
+        raise InputError(f"{place}.kind", "only a simulation follows a history", "take [push] and [motion] out")
+    times = [time for time, _ in load.history]
+    if any(b <= a for a, b in itertools.pairwise(times)):
+        raise InputError(f"{place}.history", "the times do not grow", "order its rows by time")
+    if not all(math.isfinite(factor) for _, factor in load.history):
+        raise InputError(f"{place}.history", "a factor is not finite", "write a number such as 1.0")
 
 
 def _check_direction(direction: tuple[float, float], place: str) -> None:

@@ -9,7 +9,10 @@ import msgspec
 
 from capacity import Capacity, InputError, Material, Section, capacity
 from scene.actions import Load, LoadKind, Motion, Push, unit_vector
-from scene.quantities import Acceleration, Length, Mass, RotationalStiffness, Speed, Stiffness
+from scene.bodies import Body, Coefficient, Ground, Joint
+from scene.programme import Measure, Simulation
+from scene.quantities import Acceleration, Angle, Length, Mass, RotationalStiffness, Speed, Stiffness
+from scene.vehicles import Vehicle
 
 Support = Literal["free", "pinned", "clamped", "roller-x", "roller-y", "guided-x", "guided-y"]
 Theory = Literal["euler-bernoulli", "timoshenko"]
@@ -74,6 +77,12 @@ class Member(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         ``"timoshenko"`` with shear flexibility, ``"euler-bernoulli"`` without.
     releases : tuple of str
         Ends, ``"from"`` or ``"to"``, that are hinged to their node and so bear no moment.
+    break_elongation, break_slip : Length, optional
+        Plastic deformations of a joint at which it breaks in a simulation [m]; never by default.
+    break_rotation : Angle, optional
+        Likewise [rad].
+    friction : float
+        Of its surface, where something touches it in a simulation.
     """
 
     start: str = msgspec.field(name="from")
@@ -82,10 +91,14 @@ class Member(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     material: Material
     theory: Theory = "timoshenko"
     releases: tuple[MemberEnd, ...] = ()
+    break_elongation: Length | None = None
+    break_slip: Length | None = None
+    break_rotation: Angle | None = None
+    friction: Coefficient = 0.5
 
 
 class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A structure and what happens to it.
+    """A structure, loose bodies, and what happens to them.
 
     Attributes
     ----------
@@ -95,7 +108,15 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     pushed : Push, optional
         Written ``push``; see the property of that name.
     motion : Motion, optional
+    simulation : Simulation, optional
     loads : tuple of Load
+    bodies : dict[str, Body]
+    joints : dict[str, Joint]
+        Given directly, between bodies.
+    vehicles : dict[str, Vehicle]
+    grounds : tuple of Ground
+    measures : dict[str, Measure]
+        What a simulation shall tell, by the name it gets in the answer.
     gravity : Acceleration
         Downward acceleration [m/s²].
     criterion : str
@@ -106,11 +127,17 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     title: str
-    nodes: dict[str, Node]
-    members: dict[str, Member]
+    nodes: dict[str, Node] = {}
+    members: dict[str, Member] = {}
     pushed: Push | None = msgspec.field(name="push", default=None)
     motion: Motion | None = None
+    simulation: Simulation | None = None
     loads: tuple[Load, ...] = ()
+    bodies: dict[str, Body] = {}
+    joints: dict[str, Joint] = {}
+    vehicles: dict[str, Vehicle] = {}
+    grounds: tuple[Ground, ...] = ()
+    measures: dict[str, Measure] = {}
     gravity: Acceleration = Acceleration(9.81)
     criterion: Literal["tresca", "von-mises"] = "von-mises"
     kinematics: Kinematics = "small"

@@ -72,3 +72,33 @@ class RotationalStiffness(Quantity):
     """A rotational spring's stiffness [N m/rad]."""
 
     kind = "rotational stiffness"
+
+
+class Angle(Quantity):
+    """An angle, counter-clockwise [rad]."""
+
+    kind = "angle"
+
+
+class AngularSpeed(Quantity):
+    """An angular speed, counter-clockwise [rad/s]."""
+
+    kind = "angular speed"
+
+
+class Density(Quantity):
+    """A mass per volume [kg/m³]."""
+
+    kind = "density"
+
+
+class Frequency(Quantity):
+    """A frequency [Hz]."""
+
+    kind = "frequency"
+
+
+class MomentOfInertia(Quantity):
+    """A moment of inertia about a body's centre of mass [kg m²]."""
+
+    kind = "moment of inertia"

@@ -5,7 +5,7 @@ import re
 import tomllib
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import msgspec
 
@@ -94,7 +94,7 @@ def _explained(error: msgspec.ValidationError, raw: dict[str, Any]) -> InputErro
         return InputError(inner, cause.fault, cause.cure)
     unknown = re.search(r"unknown field `(.+)`", message)
     if unknown:
-        known = _known_keys(place)
+        known = _known_keys(path)
         near = difflib.get_close_matches(unknown[1], known, n=1, cutoff=0.5)
         hint = f'did you mean "{near[0]}"? ' if near else ""
         return InputError(place or "top level", f'unknown key "{unknown[1]}"', f"{hint}The keys are {', '.join(known)}")
@@ -116,13 +116,22 @@ def _named(path: str, message: str, raw: dict[str, Any]) -> str:
     return parts
 
 
-def _known_keys(place: str) -> list[str]:
-    """Keys that a table at ``place`` may have."""
-    struct: Any = Scene
-    fields = {f.encode_name: f.type for f in msgspec.structs.fields(Scene)}
-    head = place.split(".")[0].split("[")[0]
-    if head in fields:
-        inner = fields[head]
-        choices = getattr(inner, "__args__", (inner,))
-        struct = next(kind for kind in choices if isinstance(kind, type) and issubclass(kind, msgspec.Struct))
-    return [f.encode_name for f in msgspec.structs.fields(struct)]
+def _known_keys(path: str) -> list[str]:
+    """Keys that a table may have, by msgspec's path of it."""
+    structs = [Scene]
+    for key in re.findall(r"\.(\w+)", path):
+        structs = [
+            inner
+            for struct in structs
+            for field in msgspec.structs.fields(struct)
+            if field.encode_name == key
+            for inner in _structs(field.type)
+        ]
+    return list(dict.fromkeys(field.encode_name for struct in structs for field in msgspec.structs.fields(struct)))
+
+
+def _structs(kind: Any) -> list[Any]:
+    """The structs that a type is, or is made of."""
+    if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
+        return [kind]
+    return [struct for inner in get_args(kind) for struct in _structs(inner)]

@@ -1,0 +1,92 @@
+"""How a scene is simulated, and what is measured."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import msgspec
+
+from scene.quantities import Duration, Length
+
+NodeQuantity = Literal["x", "y", "angle", "displacement", "vx", "vy", "speed"]
+BodyQuantity = Literal[NodeQuantity, "kinetic-energy", "first-contact", "overlap"]
+JointQuantity = Literal[
+    "N",
+    "Q",
+    "M",
+    "impulse",
+    "utilisation",
+    "capacity-used",
+    "plastic-elongation",
+    "plastic-slip",
+    "plastic-rotation",
+    "plastic-work",
+    "yielded",
+    "broken",
+]
+Quantity = Literal[BodyQuantity, JointQuantity]
+Take = Literal["last", "first", "largest", "smallest", "change", "time-of-largest", "laps"]
+Integration = Literal["average-acceleration", "implicit-euler"]
+
+
+class Measure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A figure that a simulation shall give.
+
+    Attributes
+    ----------
+    quantity : str
+        A `BodyQuantity` of a body or vehicle, a `NodeQuantity` of a node, a `JointQuantity` of a joint or member.
+    of : str
+        Its name; ``"joints"`` is all joints. Of several joints forces and deformations are the largest by size, work
+        and counts the sum.
+    take : str
+        ``"last"``, ``"first"``, ``"largest"`` or ``"smallest"`` value, ``"change"`` from first to last,
+        ``"time-of-largest"``, or ``"laps"``: the value at the end of each lap of a vehicle.
+    at : Duration, optional
+        The value at this time instead [s].
+    since, until : Duration, optional
+        Only values between these times count [s].
+    """
+
+    quantity: Quantity
+    of: str
+    take: Take = "last"
+    at: Duration | None = None
+    since: Duration | None = None
+    until: Duration | None = None
+
+
+class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How the scene is run by ``ductile simulate``.
+
+    Attributes
+    ----------
+    duration : Duration
+        How long [s]; a push gives its own.
+    dt : Duration
+        Step [s].
+    iterations : int
+        Iterations of Chipmunk's solver in a step.
+    gravity_ramp : Duration
+        Gravity and dead loads grow over this time [s].
+    integration : str
+        ``"average-acceleration"``: second order, without damping; ``"implicit-euler"``: robust, damping with ωh/2.
+    collision_slop : Length
+        Overlap that contacts may keep [m].
+    rule : str
+        Where the joints of a member go: ``"lobatto"`` points or ``"equal"`` pieces.
+    joints : int
+        Points of the rule in each member.
+    law : str
+        Of a member's joints: ``"elastic-plastic"`` or ``"fibre"``.
+    """
+
+    duration: Duration | None = None
+    dt: Duration = Duration(1.0 / 60.0)
+    iterations: Annotated[int, msgspec.Meta(ge=1)] = 10
+    gravity_ramp: Duration = Duration(0.0)
+    integration: Integration = "average-acceleration"
+    collision_slop: Length = Length(1e-3)
+    rule: Literal["lobatto", "equal"] = "lobatto"
+    joints: Annotated[int, msgspec.Meta(ge=2)] = 5
+    law: Literal["elastic-plastic", "fibre"] = "elastic-plastic"

@@ -1,0 +1,131 @@
+"""Where a fast body first touches another within a step, so that it can end its move there.
+
+Chipmunk finds contacts where shapes overlap after they were moved, so a body that moves far in a step is deep in what
+it hits, or beyond it. Its next move is known, though: it goes on with its present velocity. The time of the first touch
+in that move is found by conservative advancement: as long as the distance to the nearest shape is d, no touch comes
+before d over the greatest speed of approach (B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems,
+thesis, Berkeley 1996, section 2.3).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import pymunk
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+_MOST_ADVANCES = 60
+
+
+@dataclass(frozen=True)
+class Touch:
+    """A body that would touch another ``time`` [s] into a step."""
+
+    body: pymunk.Body
+    time: float
+
+
+def first_touches(space: pymunk.Space, bodies: Iterable[pymunk.Body], dt: float) -> list[Touch]:
+    """Those of ``bodies`` that come to touch something within their next move of ``dt`` [s], and when.
+
+    Contacts that are there already do not count; nor does the motion of what is not among ``bodies`` and comes from
+    outside of their way.
+    """
+    touches = []
+    for body in bodies:
+        times = [
+            time
+            for own in body.shapes
+            for other in space.bb_query(_swept(own, dt), own.filter)
+            if other.body is not body and other.body is not None and not _pass(body, other.body)
+            for time in (_first_touch(own, other, dt, space.collision_slop),)
+            if time is not None
+        ]
+        if times:
+            touches.append(Touch(body, min(times)))
+    return touches
+
+
+def hold_back(touch: Touch, dt: float) -> None:
+    """Put a body back along its way, so that the move of ``dt`` [s] ends where it touches."""
+    left = dt - touch.time
+    body = touch.body
+    body.position -= body.velocity * left
+    body.angle -= body.angular_velocity * left
+
+
+def _pass(a: pymunk.Body, b: pymunk.Body) -> bool:
+    """Whether a joint keeps the two from colliding."""
+    return any(not joint.collide_bodies and b in (joint.a, joint.b) for joint in a.constraints)
+
+
+def _swept(shape: pymunk.Shape, dt: float) -> pymunk.BB:
+    """Box around all places of ``shape`` in its next move."""
+    body = shape.body
+    assert body is not None
+    bb = shape.cache_bb()
+    dx, dy = body.velocity * dt
+    turn = abs(body.angular_velocity) * dt * _reach(shape)
+    left, bottom = min(bb.left, bb.left + dx) - turn, min(bb.bottom, bb.bottom + dy) - turn
+    return pymunk.BB(left, bottom, max(bb.right, bb.right + dx) + turn, max(bb.top, bb.top + dy) + turn)
+
+
+def _reach(shape: pymunk.Shape) -> float:
+    """Greatest distance of the shape from its body's centre of mass [m]."""
+    body = shape.body
+    assert body is not None
+    centre = body.center_of_gravity
+    if isinstance(shape, pymunk.Circle):
+        return shape.offset.get_distance(centre) + shape.radius
+    if isinstance(shape, pymunk.Poly):
+        return max(corner.get_distance(centre) for corner in shape.get_vertices()) + shape.radius
+    assert isinstance(shape, pymunk.Segment)
+    return max(end.get_distance(centre) for end in (shape.a, shape.b)) + shape.radius
+
+
+def _first_touch(own: pymunk.Shape, other: pymunk.Shape, dt: float, slop: float) -> float | None:
+    """When the two shapes first touch, in a move of ``dt``; a little later, so that Chipmunk sees it."""
+    a, b = own.body, other.body
+    assert a is not None
+    assert b is not None
+    spin = abs(a.angular_velocity) * _reach(own) + abs(b.angular_velocity) * _reach(other)
+    approach = (a.velocity - b.velocity).length + spin
+    if approach == 0.0:
+        return None
+    time = 0.0
+    for _ in range(_MOST_ADVANCES):
+        distance = shapely.distance(_moved(own, time), _moved(other, time)) - _rounding(own) - _rounding(other)
+        if distance <= 0.01 * slop:
+            return None if time == 0.0 else min(time + 0.5 * slop / approach, dt)
+        time += distance / approach
+        if time >= dt:
+            return None
+    return min(time, dt)
+
+
+def _rounding(shape: pymunk.Shape) -> float:
+    assert isinstance(shape, pymunk.Circle | pymunk.Poly | pymunk.Segment)
+    return shape.radius
+
+
+def _moved(shape: pymunk.Shape, time: float) -> BaseGeometry:
+    """The shape, without its rounding, where its body will be in ``time``."""
+    body = shape.body
+    assert body is not None
+    centre = body.local_to_world(body.center_of_gravity) + body.velocity * time
+    angle = body.angle + body.angular_velocity * time
+    c, s = math.cos(angle), math.sin(angle)
+
+    def world(point: pymunk.Vec2d) -> tuple[float, float]:
+        x, y = point - body.center_of_gravity
+        return centre.x + c * x - s * y, centre.y + s * x + c * y
+
+    if isinstance(shape, pymunk.Circle):
+        return shapely.Point(world(shape.offset))
+    if isinstance(shape, pymunk.Poly):
+        return shapely.Polygon([world(corner) for corner in shape.get_vertices()])
+    assert isinstance(shape, pymunk.Segment)
+    return shapely.LineString([world(shape.a), world(shape.b)])

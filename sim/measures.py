@@ -1,0 +1,170 @@
+"""Figures that a simulation gives: what a scene's measures ask for, watched step by step."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, get_args
+
+import numpy as np
+import pymunk
+
+from scene import ALL_JOINTS, Measure
+from scene.programme import JointQuantity
+from sim.joint import DuctileJoint
+from sim.structure import Structure
+
+if TYPE_CHECKING:
+    from sim.world import World
+
+#: Units of what can be measured.
+UNITS = {
+    "x": "m",
+    "y": "m",
+    "angle": "rad",
+    "displacement": "m",
+    "vx": "m/s",
+    "vy": "m/s",
+    "speed": "m/s",
+    "kinetic-energy": "J",
+    "first-contact": "s",
+    "overlap": "m",
+    "N": "N",
+    "Q": "N",
+    "M": "N m",
+    "impulse": "N s",
+    "utilisation": "",
+    "capacity-used": "",
+    "plastic-elongation": "m",
+    "plastic-slip": "m",
+    "plastic-rotation": "rad",
+    "plastic-work": "J",
+    "yielded": "",
+    "broken": "",
+}
+_FORCES = ("N", "Q", "M")
+
+
+class Watch:
+    """A measure and its values so far.
+
+    Attributes
+    ----------
+    time, value : list of float
+        At the start and after each step.
+    """
+
+    def __init__(self, measure: Measure, world: World) -> None:
+        self._measure, self._world = measure, world
+        self._now = _reader(measure, world)
+        self.time: list[float] = []
+        self.value: list[float] = []
+        self.note()
+
+    def note(self) -> None:
+        """Take the value as it is now."""
+        self.time.append(self._world.time)
+        self.value.append(self._now())
+
+    def result(self) -> float | list[float]:
+        """What the measure asks for; nan when there is no such value."""
+        measure = self._measure
+        if measure.take == "laps":
+            laps = sorted(time for car in self._world.cars.values() for time in car.laps)
+            return [self._at(time) for time in laps]
+        if measure.at is not None:
+            return self._at(measure.at)
+        first = 0 if measure.since is None else bisect.bisect_left(self.time, measure.since - 1e-9)
+        last = len(self.time) if measure.until is None else bisect.bisect_right(self.time, measure.until + 1e-9)
+        values = np.array(self.value[first:last])
+        if len(values) == 0:
+            return math.nan
+        largest = int(np.argmax(np.abs(values)))
+        return {
+            "last": float(values[-1]),
+            "first": float(values[0]),
+            "largest": float(values[largest]),
+            "smallest": float(values[np.argmin(np.abs(values))]),
+            "change": float(values[-1] - values[0]),
+            "time-of-largest": self.time[first + largest],
+        }[measure.take]
+
+    def _at(self, time: float) -> float:
+        """The value of the last step that ended by ``time``."""
+        k = bisect.bisect_right(self.time, time + 1e-9)
+        return self.value[k - 1] if self.time[-1] >= time - 1e-9 else math.nan
+
+
+def _reader(measure: Measure, world: World) -> Callable[[], float]:
+    if measure.quantity in get_args(JointQuantity):
+        joints = [joint for group in world.joints.values() for joint in group]
+        if measure.of != ALL_JOINTS:
+            joints = list(world.joints[measure.of])
+        return lambda: _of_joints(measure.quantity, joints)
+    if measure.quantity in ("first-contact", "overlap"):
+        contacts = world.contacts_of(world.bodies_called(measure.of))
+        return lambda: contacts.first if measure.quantity == "first-contact" else contacts.overlap
+    if measure.quantity == "kinetic-energy":
+        bodies = world.bodies_called(measure.of)
+        return lambda: sum(body.kinetic_energy for body in bodies)
+    body, point = world.point_called(measure.of)
+    return _of_point(measure.quantity, body, point)
+
+
+def _of_point(quantity: str, body: pymunk.Body, point: tuple[float, float]) -> Callable[[], float]:
+    origin = body.local_to_world(point)
+
+    def place() -> pymunk.Vec2d:
+        return body.local_to_world(point)
+
+    def velocity() -> pymunk.Vec2d:
+        return body.velocity_at_local_point(point)
+
+    return {
+        "x": lambda: place().x,
+        "y": lambda: place().y,
+        "angle": lambda: body.angle,
+        "displacement": lambda: place().get_distance(origin),
+        "vx": lambda: velocity().x,
+        "vy": lambda: velocity().y,
+        "speed": lambda: velocity().length,
+    }[quantity]
+
+
+def _of_joints(quantity: str, joints: Sequence[DuctileJoint]) -> float:
+    """Of several joints the largest by size; sums of work and counts."""
+    if quantity in _FORCES:
+        return _largest(row[_FORCES.index(quantity)] for row in rows(joints, "force"))
+    if quantity == "impulse":
+        return _largest(joint.impulse for joint in joints if not joint.broken)
+    if quantity == "utilisation":
+        return _largest(max(row) for row in rows(joints, "utilisation"))
+    if quantity == "capacity-used":
+        return _largest(rows(joints, "capacity_used"))
+    if quantity == "plastic-work":
+        return float(sum(rows(joints, "dissipated")))
+    if quantity == "broken":
+        return float(sum(joint.broken for joint in joints))
+    plastic = list(rows(joints, "plastic_deformation"))
+    if quantity == "yielded":
+        return float(sum(bool(np.any(row)) for row in plastic))
+    column = {"plastic-elongation": 0, "plastic-slip": 2, "plastic-rotation": 3}[quantity]
+    return _largest(row[column] for row in plastic)
+
+
+def rows(joints: Iterable[DuctileJoint], name: str) -> Iterable[np.ndarray]:
+    """Each joint's row of an array of its structure; no forces in broken ones, and nothing before the first step."""
+    arrays: dict[Structure, np.ndarray] = {}
+    for joint in joints:
+        structure = joint.structure
+        if structure is None or (name in ("force", "utilisation") and joint.broken):
+            yield np.zeros(() if name in ("capacity_used", "dissipated") else 4)
+            continue
+        if structure not in arrays:
+            arrays[structure] = getattr(structure, name)
+        yield arrays[structure][joint.index]
+
+
+def _largest(values: Iterable[float]) -> float:
+    return float(max(values, key=abs, default=0.0))

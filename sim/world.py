@@ -1,0 +1,147 @@
+"""A whole scene in a space: members, loose bodies, joints, vehicles, ground, and their programme in time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import pymunk
+
+from scene import Member, Scene, Simulation
+from sim.contact_watch import ContactWatch
+from sim.direct_joints import add_joints
+from sim.first_touch import first_touches, hold_back
+from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits
+from sim.load_programme import LoadProgramme
+from sim.loose_bodies import add_bodies, add_grounds
+from sim.measures import Watch
+from sim.members import Assembly, assemble
+from sim.model import Model
+from sim.vehicles import Car, add_vehicles
+
+_SCHEMES = {"average-acceleration": AVERAGE_ACCELERATION, "implicit-euler": IMPLICIT_EULER}
+
+
+class World:
+    """A scene, ready to step.
+
+    Parameters
+    ----------
+    scene : Scene
+    dt : float, optional
+        Step [s], in place of the scene's.
+    iterations : int, optional
+        Iterations of Chipmunk's solver in a step, in place of the scene's.
+
+    Attributes
+    ----------
+    space : pymunk.Space
+    time : float
+        Simulated so far [s].
+    bodies : dict[str, pymunk.Body]
+        Loose ones.
+    cars : dict[str, Car]
+    joints : dict[str, tuple of DuctileJoint]
+        By the name of the joint, or of the member from its start to its end.
+    broken : list of (float, str)
+        Times at which joints broke [s], and what they are called.
+    """
+
+    def __init__(self, scene: Scene, dt: float | None = None, iterations: int | None = None) -> None:
+        self.scene = scene
+        run = scene.simulation or Simulation()
+        self.dt = float(run.dt) if dt is None else dt
+        self.space = space = pymunk.Space()
+        space.iterations = run.iterations if iterations is None else iterations
+        space.collision_slop = run.collision_slop
+        scheme = _SCHEMES[run.integration]
+        self.time = 0.0
+        self._ramp = float(run.gravity_ramp)
+        add_grounds(scene, space)
+        self.bodies = add_bodies(scene, space)
+        self.joints: dict[str, tuple[DuctileJoint, ...]] = {
+            name: (joint,) for name, joint in add_joints(scene, space, self.bodies, scheme).items()
+        }
+        self.cars: dict[str, Car] = add_vehicles(scene, space)
+        self._assembly = self._add_members(Model(run.rule, run.joints, run.law, scheme=scheme))
+        self._loads = None if self._assembly is None else LoadProgramme(scene, self._assembly)
+        self._continuous = [self.bodies[name] for name, body in scene.bodies.items() if body.continuous]
+        self.labels = {joint: label for label, joint in self._labelled()}
+        self.broken: list[tuple[float, str]] = []
+        for joint in self.labels:
+            joint.on_break = self._note_break
+        self._contacts: list[ContactWatch] = []
+        self._watches = {name: Watch(measure, self) for name, measure in scene.measures.items()}
+
+    def _add_members(self, model: Model) -> Assembly | None:
+        scene = self.scene
+        if not scene.members:
+            return None
+        limits = {name: _limits(member) for name, member in scene.members.items()}
+        assembly = assemble(scene, model, self.space, limits=limits)
+        for piece in assembly.pieces:
+            for shape in piece.body.shapes:
+                shape.friction = scene.members[piece.member].friction
+        for name in scene.members:
+            self.joints[name] = tuple(
+                joint for place, joint in zip(assembly.places, assembly.joints, strict=False) if place.member == name
+            )
+        return assembly
+
+    def _labelled(self) -> list[tuple[str, DuctileJoint]]:
+        return [
+            (name if name in self.scene.joints else f"{name} {i}", joint)
+            for name, joints in self.joints.items()
+            for i, joint in enumerate(joints, 1)
+        ]
+
+    def _note_break(self, joint: DuctileJoint) -> None:
+        self.broken.append((self.time + self.dt, self.labels[joint]))
+
+    def step(self) -> None:
+        """One step of `dt`."""
+        share = min(1.0, (self.time + self.dt) / self._ramp) if self._ramp > 0.0 else 1.0
+        self.space.gravity = (0.0, -share * self.scene.gravity)
+        if self._loads is not None:
+            self._loads.act(self.time + self.dt, share)
+        for car in self.cars.values():
+            car.drive(self.time)
+        touch = self.dt
+        loose = [body for body in self._continuous if not body.constraints]
+        for found in first_touches(self.space, loose, self.dt):
+            hold_back(found, self.dt)
+            touch = min(touch, found.time)
+        self.space.step(self.dt)
+        for contacts in self._contacts:
+            contacts.note(self.time + touch)
+        self.time += self.dt
+        for watch in self._watches.values():
+            watch.note()
+
+    def bodies_called(self, name: str) -> Sequence[pymunk.Body]:
+        """The body called ``name``, or all of the vehicle."""
+        return self.cars[name].bodies if name in self.cars else (self.bodies[name],)
+
+    def point_called(self, name: str) -> tuple[pymunk.Body, tuple[float, float]]:
+        """The centre of mass of a body or of a vehicle's chassis, or a node, as a point of a body."""
+        if name in self.bodies or name in self.cars:
+            body = self.bodies[name] if name in self.bodies else self.cars[name].chassis
+            return body, tuple(body.center_of_gravity)
+        assert self._assembly is not None
+        node = self._assembly.nodes[name]
+        return node.body, node.point
+
+    def contacts_of(self, bodies: Sequence[pymunk.Body]) -> ContactWatch:
+        """A watch over the contacts of ``bodies``, kept up to date from now on."""
+        self._contacts.append(ContactWatch(bodies))
+        return self._contacts[-1]
+
+    def results(self) -> dict[str, float | list[float]]:
+        """What the scene's measures ask for, by their names, up to now."""
+        return {name: watch.result() for name, watch in self._watches.items()}
+
+
+def _limits(member: Member) -> Limits:
+    values = (member.break_elongation, member.break_slip, member.break_rotation)
+    elongation, slip, rotation = (math.inf if value is None else float(value) for value in values)
+    return Limits(elongation, slip, rotation)

@@ -12,6 +12,7 @@ from calibration.commands.calibrate import calibrate
 from calibration.commands.capacity import capacity
 from calibration.commands.reference import reference
 from calibration.commands.scenes import scenes
+from calibration.commands.simulate import simulate
 from calibration.commands.study import study
 from capacity.errors import InputError
 
@@ -21,7 +22,7 @@ app = App(
     version_flags=["--version"],
     result_action="return_value",
 )
-for command in (capacity, scenes, reference, calibrate, study):
+for command in (capacity, scenes, reference, simulate, calibrate, study):
     app.command(command)
 
 

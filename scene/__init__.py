@@ -20,7 +20,7 @@ from scene.bodies import GROUND, Body, Box, Circle, Ground, Joint, Polygon, Shap
 from scene.checks import check
 from scene.model import HELD, Member, MemberEnd, Node, Scene
 from scene.programme import Measure, Simulation
-from scene.reading import builtin_names, builtin_text, load_scene, parse_scene
+from scene.reading import builtin_names, builtin_text, json_schema, load_scene, parse_scene
 from scene.simulation_checks import ALL_JOINTS
 from scene.vehicles import Vehicle, Wheel
 
@@ -50,6 +50,7 @@ __all__ = [
     "builtin_names",
     "builtin_text",
     "check",
+    "json_schema",
     "load_scene",
     "parse_scene",
 ]

@@ -8,7 +8,7 @@ from typing import Literal
 
 import msgspec
 
-from scene.quantities import Duration, Force, ForcePerLength, Length, Moment, Speed
+from scene.quantities import Duration, Force, ForcePerLength, Length, Moment, Speed, si
 
 LoadKind = Literal["dead", "proportional", "step", "history"]
 
@@ -37,10 +37,10 @@ class Load(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     node: str | None = None
-    force: tuple[Force, Force] = (Force(0.0), Force(0.0))
-    moment: Moment = Moment(0.0)
+    force: tuple[Force, Force] = (si(0.0), si(0.0))
+    moment: Moment = si(0.0)
     member: str | None = None
-    per_length: tuple[ForcePerLength, ForcePerLength] = (ForcePerLength(0.0), ForcePerLength(0.0))
+    per_length: tuple[ForcePerLength, ForcePerLength] = (si(0.0), si(0.0))
     kind: LoadKind = "proportional"
     history: tuple[tuple[Duration, float], ...] = ()
 
@@ -66,7 +66,7 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     node: str
     direction: tuple[float, float]
-    distance: Length = Length(0.0)
+    distance: Length = si(0.0)
     turning_points: tuple[Length, ...] = ()
     unload: bool = False
 
@@ -95,7 +95,7 @@ class Motion(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     duration: Duration
-    velocity: tuple[Speed, Speed] = (Speed(0.0), Speed(0.0))
+    velocity: tuple[Speed, Speed] = (si(0.0), si(0.0))
     watch: str | None = None
     direction: tuple[float, float] = (0.0, 1.0)
 

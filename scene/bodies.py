@@ -19,6 +19,7 @@ from scene.quantities import (
     RotationalStiffness,
     Speed,
     Stiffness,
+    si,
 )
 
 #: A number that is not negative.
@@ -41,7 +42,7 @@ class Circle(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field=
     """
 
     radius: Length
-    at: Point = (Length(0.0), Length(0.0))
+    at: Point = (si(0.0), si(0.0))
 
 
 class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="box"):
@@ -56,7 +57,7 @@ class Box(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="ki
     """
 
     size: Point
-    at: Point = (Length(0.0), Length(0.0))
+    at: Point = (si(0.0), si(0.0))
 
 
 class Polygon(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="kind", tag="polygon"):
@@ -110,12 +111,12 @@ class Body(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     shapes: tuple[Shape, ...]
     at: Point
-    angle: Angle = Angle(0.0)
-    velocity: tuple[Speed, Speed] = (Speed(0.0), Speed(0.0))
-    spin: AngularSpeed = AngularSpeed(0.0)
+    angle: Angle = si(0.0)
+    velocity: tuple[Speed, Speed] = (si(0.0), si(0.0))
+    spin: AngularSpeed = si(0.0)
     mass: Mass | None = None
-    density: Density = Density(7850.0)
-    depth: Length = Length(1.0)
+    density: Density = si(7850.0)
+    depth: Length = si(1.0)
     moment_of_inertia: MomentOfInertia | None = None
     fixed: bool = False
     friction: Coefficient = 0.5
@@ -179,9 +180,9 @@ class Joint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     N_max: Force | None = None
     Q_max: Force | None = None
     M_max: Moment | None = None
-    elastic_elongation: Length = Length(1e-4)
-    elastic_slip: Length = Length(1e-4)
-    elastic_rotation: Angle = Angle(0.01)
+    elastic_elongation: Length = si(1e-4)
+    elastic_slip: Length = si(1e-4)
+    elastic_rotation: Angle = si(0.01)
     stiffness: tuple[Stiffness, Stiffness, RotationalStiffness] | None = None
     frequency: Frequency | None = None
     damping_ratio: Coefficient = 0.0

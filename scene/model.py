@@ -11,7 +11,7 @@ from capacity import Capacity, InputError, Material, Section, capacity
 from scene.actions import Load, LoadKind, Motion, Push, unit_vector
 from scene.bodies import Body, Coefficient, Ground, Joint
 from scene.programme import Measure, Simulation
-from scene.quantities import Acceleration, Angle, Length, Mass, RotationalStiffness, Speed, Stiffness
+from scene.quantities import Acceleration, Angle, Length, Mass, RotationalStiffness, Speed, Stiffness, si
 from scene.vehicles import Vehicle
 
 Support = Literal["free", "pinned", "clamped", "roller-x", "roller-y", "guided-x", "guided-y"]
@@ -54,9 +54,9 @@ class Node(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     at: tuple[Length, Length]
     support: Support = "free"
     spring: tuple[Stiffness, Stiffness, RotationalStiffness] | None = None
-    settlement: tuple[Length, Length] = (Length(0.0), Length(0.0))
-    mass: Mass = Mass(0.0)
-    velocity: tuple[Speed, Speed] = (Speed(0.0), Speed(0.0))
+    settlement: tuple[Length, Length] = (si(0.0), si(0.0))
+    mass: Mass = si(0.0)
+    velocity: tuple[Speed, Speed] = (si(0.0), si(0.0))
 
     @property
     def held(self) -> tuple[bool, bool, bool]:
@@ -138,7 +138,7 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     vehicles: dict[str, Vehicle] = {}
     grounds: tuple[Ground, ...] = ()
     measures: dict[str, Measure] = {}
-    gravity: Acceleration = Acceleration(9.81)
+    gravity: Acceleration = si(9.81)
     criterion: Literal["tresca", "von-mises"] = "von-mises"
     kinematics: Kinematics = "small"
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from scene.quantities import Duration, Length
+from scene.quantities import Duration, Length, si
 
 NodeQuantity = Literal["x", "y", "angle", "displacement", "vx", "vy", "speed"]
 BodyQuantity = Literal[NodeQuantity, "kinetic-energy", "first-contact", "overlap"]
@@ -70,7 +70,8 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     gravity_ramp : Duration
         Gravity and dead loads grow over this time [s].
     integration : str
-        ``"average-acceleration"``: second order, without damping; ``"implicit-euler"``: robust, damping with ωh/2.
+        ``"average-acceleration"``: second order, without damping; ``"implicit-euler"``: robust, damping with ωh/2. By
+        default the latter for a push, and else the former.
     collision_slop : Length
         Overlap that contacts may keep [m].
     rule : str
@@ -82,11 +83,11 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     duration: Duration | None = None
-    dt: Duration = Duration(1.0 / 60.0)
+    dt: Duration = si(1.0 / 60.0)
     iterations: Annotated[int, msgspec.Meta(ge=1)] = 10
-    gravity_ramp: Duration = Duration(0.0)
-    integration: Integration = "average-acceleration"
-    collision_slop: Length = Length(1e-3)
+    gravity_ramp: Duration = si(0.0)
+    integration: Integration | None = None
+    collision_slop: Length = si(1e-3)
     rule: Literal["lobatto", "equal"] = "lobatto"
     joints: Annotated[int, msgspec.Meta(ge=2)] = 5
     law: Literal["elastic-plastic", "fibre"] = "elastic-plastic"

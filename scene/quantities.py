@@ -1,6 +1,13 @@
 """Numbers of a scene that are written with a unit and read as SI floats."""
 
+from typing import Any
+
 from capacity.units import to_si
+
+
+def si(number: float) -> Any:
+    """A default, in SI. It is a plain float, as the JSON schema wants it, where a `Quantity` is declared."""
+    return number
 
 
 class Quantity(float):

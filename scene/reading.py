@@ -10,6 +10,7 @@ from typing import Any, get_args
 import msgspec
 
 from capacity import InputError, Material, Section, parse_material, parse_section
+from capacity.units import QUANTITIES
 from scene.checks import check
 from scene.model import Scene
 from scene.quantities import Quantity
@@ -69,6 +70,24 @@ def parse_scene(text: str, source: str) -> Scene:
         raise _explained(error, raw).at(source) from error
     except InputError as error:
         raise error.at(source) from error
+
+
+def json_schema() -> dict[str, Any]:
+    """The JSON schema of scene files; a quantity is text with a unit or an SI number."""
+    return msgspec.json.schema(Scene, schema_hook=_schema_of)
+
+
+def _schema_of(kind: type) -> dict[str, Any]:
+    """msgspec's hook for the types it does not know."""
+    if issubclass(kind, Quantity):
+        _, example = QUANTITIES[kind.kind]
+        return {
+            "type": ["string", "number"],
+            "description": f"{kind.kind}, with a unit or in SI",
+            "examples": [example],
+        }
+    examples = {Section: "IPE 300", Material: "S235"}
+    return {"type": "string", "description": f"a {kind.__name__.lower()}", "examples": [examples[kind]]}
 
 
 def _read(kind: type, value: Any) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from scene.bodies import Coefficient, Point, Shape
-from scene.quantities import AngularSpeed, Density, Duration, Frequency, Length, Mass, Moment, Speed
+from scene.quantities import AngularSpeed, Density, Duration, Frequency, Length, Mass, Moment, Speed, si
 
 
 class Wheel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -33,7 +33,7 @@ class Wheel(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     radius: Length
     mass: Mass
     friction: Coefficient = 1.0
-    suspension_frequency: Frequency = Frequency(4.0)
+    suspension_frequency: Frequency = si(4.0)
     suspension_damping_ratio: Coefficient = 0.7
     driven: bool = False
 
@@ -99,10 +99,10 @@ class Vehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     at: Point
     chassis: tuple[Shape, ...]
     wheels: tuple[Wheel, ...]
-    velocity: tuple[Speed, Speed] = (Speed(0.0), Speed(0.0))
+    velocity: tuple[Speed, Speed] = (si(0.0), si(0.0))
     mass: Mass | None = None
-    density: Density = Density(200.0)
-    depth: Length = Length(1.0)
+    density: Density = si(200.0)
+    depth: Length = si(1.0)
     friction: Coefficient = 0.5
     restitution: Coefficient = 0.0
     drive: tuple[Drive, ...] = ()

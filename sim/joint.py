@@ -152,6 +152,11 @@ class DuctileJoint(pymunk.Constraint):
         return (0.0, 0.0, 0.0) if self.broken else self._row("force")
 
     @property
+    def impulse(self) -> float:
+        """Size of the impulse of N and Q in the last step [N s]; 0 before the first."""
+        return 0.0 if self._structure is None else float(super().impulse)
+
+    @property
     def utilisation(self) -> tuple[float, float, float]:
         """|N| / N_max, |Q| / Q_max and |M| / M_max in the last step."""
         return self._row("utilisation")

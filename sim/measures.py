@@ -141,7 +141,7 @@ def _of_joints(quantity: str, joints: Sequence[DuctileJoint]) -> float:
     if quantity == "utilisation":
         return _largest(max(row) for row in rows(joints, "utilisation"))
     if quantity == "capacity-used":
-        return _largest(rows(joints, "capacity_used"))
+        return _largest(map(float, rows(joints, "capacity_used")))
     if quantity == "plastic-work":
         return float(sum(rows(joints, "dissipated")))
     if quantity == "broken":

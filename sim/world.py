@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import pymunk
 
+from capacity import InputError
 from scene import Member, Scene, Simulation
 from sim.contact_watch import ContactWatch
 from sim.direct_joints import add_joints
@@ -17,6 +18,7 @@ from sim.loose_bodies import add_bodies, add_grounds
 from sim.measures import Watch
 from sim.members import Assembly, assemble
 from sim.model import Model
+from sim.prescribed_push import PrescribedPush
 from sim.vehicles import Car, add_vehicles
 
 _SCHEMES = {"average-acceleration": AVERAGE_ACCELERATION, "implicit-euler": IMPLICIT_EULER}
@@ -32,12 +34,24 @@ class World:
         Step [s], in place of the scene's.
     iterations : int, optional
         Iterations of Chipmunk's solver in a step, in place of the scene's.
+    duration : float, optional
+        [s], in place of the scene's.
+
+    Raises
+    ------
+    InputError
+        When there is no programme to follow, or a push shall have another duration.
+    SolverError
+        When a scene that is pushed does not come to rest under its own weight.
 
     Attributes
     ----------
     space : pymunk.Space
-    time : float
-        Simulated so far [s].
+    time, duration : float
+        Simulated so far, and in all [s].
+    dt : float
+        [s]
+    push : PrescribedPush, optional
     bodies : dict[str, pymunk.Body]
         Loose ones.
     cars : dict[str, Car]
@@ -47,14 +61,20 @@ class World:
         Times at which joints broke [s], and what they are called.
     """
 
-    def __init__(self, scene: Scene, dt: float | None = None, iterations: int | None = None) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        dt: float | None = None,
+        iterations: int | None = None,
+        duration: float | None = None,
+    ) -> None:
         self.scene = scene
         run = scene.simulation or Simulation()
         self.dt = float(run.dt) if dt is None else dt
         self.space = space = pymunk.Space()
         space.iterations = run.iterations if iterations is None else iterations
         space.collision_slop = run.collision_slop
-        scheme = _SCHEMES[run.integration]
+        scheme = _SCHEMES[run.integration or ("average-acceleration" if scene.pushed is None else "implicit-euler")]
         self.time = 0.0
         self._ramp = float(run.gravity_ramp)
         add_grounds(scene, space)
@@ -65,6 +85,8 @@ class World:
         self.cars: dict[str, Car] = add_vehicles(scene, space)
         self._assembly = self._add_members(Model(run.rule, run.joints, run.law, scheme=scheme))
         self._loads = None if self._assembly is None else LoadProgramme(scene, self._assembly)
+        self.push = self._start_push()
+        self.duration = self._duration(run, duration)
         self._continuous = [self.bodies[name] for name, body in scene.bodies.items() if body.continuous]
         self.labels = {joint: label for label, joint in self._labelled()}
         self.broken: list[tuple[float, str]] = []
@@ -87,6 +109,21 @@ class World:
                 joint for place, joint in zip(assembly.places, assembly.joints, strict=False) if place.member == name
             )
         return assembly
+
+    def _start_push(self) -> PrescribedPush | None:
+        if self.scene.pushed is None or self._assembly is None:
+            return None
+        return PrescribedPush(self.scene, self._assembly)
+
+    def _duration(self, run: Simulation, wanted: float | None) -> float:
+        if self.push is not None:
+            if wanted is not None:
+                raise InputError("duration", "a push ends at its last stop", "leave it out")
+            return self.push.duration
+        length = run.duration if wanted is None else wanted
+        if length is None:
+            raise InputError("simulation", "there is none in the scene", 'add [simulation] with duration = "5 s"')
+        return float(length)
 
     def _labelled(self) -> list[tuple[str, DuctileJoint]]:
         return [
@@ -111,12 +148,21 @@ class World:
         for found in first_touches(self.space, loose, self.dt):
             hold_back(found, self.dt)
             touch = min(touch, found.time)
+        if self.push is not None:
+            self.push.aim(self.time + self.dt, self.dt)
         self.space.step(self.dt)
         for contacts in self._contacts:
             contacts.note(self.time + touch)
         self.time += self.dt
+        if self.push is not None:
+            self.push.read(self.time, self.dt)
         for watch in self._watches.values():
             watch.note()
+
+    @property
+    def finished(self) -> bool:
+        """Whether the scene's duration is over, or its push."""
+        return self.push.finished if self.push is not None else self.time >= self.duration - 0.5 * self.dt
 
     def bodies_called(self, name: str) -> Sequence[pymunk.Body]:
         """The body called ``name``, or all of the vehicle."""
@@ -126,7 +172,8 @@ class World:
         """The centre of mass of a body or of a vehicle's chassis, or a node, as a point of a body."""
         if name in self.bodies or name in self.cars:
             body = self.bodies[name] if name in self.bodies else self.cars[name].chassis
-            return body, tuple(body.center_of_gravity)
+            x, y = body.center_of_gravity
+            return body, (x, y)
         assert self._assembly is not None
         node = self._assembly.nodes[name]
         return node.body, node.point

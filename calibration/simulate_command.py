@@ -1,0 +1,153 @@
+"""What ``ductile simulate`` answers: the run of a scene, as an object for JSON, a table, and joints over time."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from capacity.units import engineering
+from sim.measures import UNITS, rows
+from sim.world import World
+
+_COLUMNS = (
+    ("N_N", "Q_N", "M_Nm"),
+    ("extension_m", "slip_m", "rotation_rad"),
+)
+
+
+class JointTable:
+    """All joints of a world over time, as CSV.
+
+    Parameters
+    ----------
+    world : World
+    every : float
+        Simulated time between two rows of a joint [s]; no less than a step.
+    """
+
+    def __init__(self, world: World, every: float) -> None:
+        self._world, self._every = world, every
+        self._text = io.StringIO()
+        self._writer = csv.writer(self._text, lineterminator="\n")
+        self._next = 0.0
+        forces, deformations = _COLUMNS
+        self._writer.writerow(["time_s", "joint", *forces, *deformations, "capacity_used", "dissipated_J", "broken"])
+
+    def note(self) -> None:
+        """Write the joints as they are, when it is time."""
+        if self._world.time < self._next - 1e-9:
+            return
+        self._next += self._every
+        joints = list(self._world.labels)
+        columns = [rows(joints, name) for name in ("force", "deformation", "capacity_used", "dissipated")]
+        for joint, force, deformation, used, work in zip(joints, *columns, strict=True):
+            numbers = [*force[:3], *deformation[:3], float(used), float(work)]
+            label = self._world.labels[joint]
+            cells = [f"{number:.9g}" for number in numbers]
+            self._writer.writerow([f"{self._world.time:.9g}", label, *cells, int(joint.broken)])
+
+    def text(self) -> str:
+        """The whole table."""
+        return self._text.getvalue()
+
+
+def run(world: World, after_step: Callable[[], None], watch: Callable[[str, float], None]) -> float:
+    """Step ``world`` to its end; the seconds that the steps took.
+
+    ``after_step`` is called after each; ``watch`` is told the real-time factor and the finished share.
+    """
+    spent = 0.0
+    steps = 0
+    while not world.finished:
+        started = time.perf_counter()
+        world.step()
+        spent += time.perf_counter() - started
+        after_step()
+        steps += 1
+        if steps % 16 == 0:
+            watch(f"{world.time:.2f} s simulated, {world.time / spent:.3g} × real time", world.time / world.duration)
+    return spent
+
+
+def as_object(world: World, name: str, seconds: float) -> dict[str, Any]:
+    """The answer as one object; SI. A figure that there is none of is null."""
+    joints = list(world.labels)
+    used = [float(value) for value in rows(joints, "capacity_used")]
+    plastic = [bool(row.any()) for row in rows(joints, "plastic_deformation")]
+    structures = {joint.structure for joint in joints if joint.structure is not None}
+    most = max(range(len(joints)), key=used.__getitem__, default=None)
+    answer: dict[str, Any] = {
+        "scene": name,
+        "title": world.scene.title,
+        "dt": world.dt,
+        "iterations": world.space.iterations,
+        "steps": round(world.time / world.dt),
+        "simulated_seconds": world.time,
+        "seconds": seconds,
+        "real_time_factor": world.time / seconds if seconds > 0.0 else None,
+        "measures": {name: _finite(value) for name, value in world.results().items()},
+        "units": {name: UNITS[measure.quantity] for name, measure in world.scene.measures.items()},
+        "joints": {
+            "count": len(joints),
+            "yielded": sum(plastic),
+            "broken": [{"joint": label, "time": moment} for moment, label in world.broken],
+            "most_used": None if most is None else {"joint": world.labels[joints[most]], "capacity_used": used[most]},
+            "plastic_work": float(sum(rows(joints, "dissipated"))),
+        },
+        "unconverged": sum(structure.unconverged for structure in structures),
+    }
+    if world.push is not None:
+        answer["push"] = {
+            "displacement": world.push.displacement,
+            "load": world.push.load,
+            "load_is_factor": bool(world.scene.loads_of("proportional")),
+        }
+    return answer
+
+
+def _finite(value: float | list[float]) -> float | list[float | None] | None:
+    if isinstance(value, list):
+        return [number if math.isfinite(number) else None for number in value]
+    return value if math.isfinite(value) else None
+
+
+def print_answer(answer: dict[str, Any], console: Console) -> None:
+    """Key figures for a person."""
+    console.print(f"[bold]{answer['title']}[/bold]")
+    table = Table("", "", box=None, show_header=False)
+    for name, value in answer["measures"].items():
+        unit = answer["units"][name]
+        values = value if isinstance(value, list) else [value]
+        table.add_row(name, ", ".join("–" if v is None else _shown(v, unit) for v in values) or "–")
+    if "push" in answer:
+        table.add_row("pushed by", engineering(answer["push"]["displacement"], "m"))
+        factor = answer["push"]["load_is_factor"]
+        table.add_row(
+            "load factor" if factor else "load at the end", f"{answer['push']['load']:.5g}{'' if factor else ' N'}"
+        )
+    joints = answer["joints"]
+    broken = ", ".join(f"{entry['joint']} at {entry['time']:.3f} s" for entry in joints["broken"]) or "none"
+    table.add_row("joints", f"{joints['count']}, of which {joints['yielded']} yielded; broken: {broken}")
+    most = joints["most_used"]
+    if most is not None and most["capacity_used"] > 0.0:
+        table.add_row("most used joint", f"{most['joint']}, {most['capacity_used']:.1%} of its plastic capacity")
+    table.add_row("plastic work in joints", engineering(joints["plastic_work"], "J"))
+    table.add_row("steps", f"{answer['steps']} of {engineering(answer['dt'], 's')}, {answer['iterations']} iterations")
+    if answer["real_time_factor"] is not None:
+        table.add_row("speed", f"{answer['real_time_factor']:.3g} × real time")
+    if answer["unconverged"]:
+        table.add_row("steps that did not converge", str(answer["unconverged"]))
+    console.print(table)
+
+
+def _shown(value: float, unit: str) -> str:
+    if unit in ("", "rad"):
+        return f"{value:.4g} {unit}".rstrip()
+    return engineering(value, unit)

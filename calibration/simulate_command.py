@@ -88,7 +88,7 @@ def as_object(world: World, name: str, seconds: float) -> dict[str, Any]:
         "title": world.scene.title,
         "dt": world.dt,
         "iterations": world.space.iterations,
-        "steps": round(world.time / world.dt),
+        "steps": world.steps,
         "simulated_seconds": world.time,
         "seconds": seconds,
         "real_time_factor": world.time / seconds if seconds > 0.0 else None,

@@ -74,6 +74,9 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         default the latter for a push, and else the former.
     collision_slop : Length
         Overlap that contacts may keep [m].
+    largest_travel : Length, optional
+        From where a continuous body first touches something, steps are cut into equal parts, so that it travels no
+        further than this in one [m].
     rule : str
         Where the joints of a member go: ``"lobatto"`` points or ``"equal"`` pieces.
     joints : int
@@ -88,6 +91,7 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     gravity_ramp: Duration = si(0.0)
     integration: Integration | None = None
     collision_slop: Length = si(1e-3)
+    largest_travel: Length | None = None
     rule: Literal["lobatto", "equal"] = "lobatto"
     joints: Annotated[int, msgspec.Meta(ge=2)] = 5
     law: Literal["elastic-plastic", "fibre"] = "elastic-plastic"

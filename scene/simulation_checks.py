@@ -61,6 +61,7 @@ def _check_programme(scene: Scene, simulation: Simulation) -> None:
     if simulation.gravity_ramp < 0.0:
         raise InputError("simulation.gravity_ramp", "it is negative", 'write a time such as "4 s"')
     _positive(simulation.collision_slop, "simulation.collision_slop", '"1 mm"')
+    _positive(simulation.largest_travel, "simulation.largest_travel", '"1 mm"')
     gives_its_own = scene.pushed is not None or scene.motion is not None
     if simulation.duration is None and not gives_its_own:
         raise InputError("simulation.duration", "it is missing", 'write a time such as "5 s"')

@@ -28,8 +28,12 @@ COSINE, SINE, MINUS_SINE, COSINE_AGAIN, ORIGIN = 17, 18, 19, 20, 21
 CENTRE = 6
 # Beyond what every kernel reads: pseudo-velocities that take out overlap, and the list of contacts.
 BIAS_VX, BIAS_SPIN = 24, 26
+BODY_SPACE = 27
 ARBITERS = 29
 BODY_FULL_WORDS = 31
+
+# cpSpace: how much shapes may overlap.
+SPACE_SLOP, SPACE_WORDS = 6, 8
 
 # cpArbiter: the contacts between two shapes.
 ARBITER_FRICTION, ARBITER_SURFACE = 1, 2
@@ -124,7 +128,10 @@ def verify() -> None:
     bodies = words(location, CONTROL, np.int64)
     fits &= bool(np.array_equal(anchors, [29.0, 31.0, 37.0, 41.0]))
     space = pymunk.Space()
+    space.collision_slop = 43.0
     space.add(body, other, joint)
+    fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[BODY_SPACE] == address(space._space)
+    fits &= words(address(space._space), SPACE_WORDS)[SPACE_SLOP] == 43.0
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == address(space._space)
     space.remove(joint)
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == 0

@@ -35,3 +35,10 @@ class ContactWatch:
     def _look(self, arbiter: pymunk.Arbiter, depths: list[float]) -> None:
         if any(shape.body not in self._bodies for shape in arbiter.shapes):
             depths.extend(-point.distance for point in arbiter.contact_point_set.points)
+
+
+def is_touching(body: pymunk.Body) -> bool:
+    """Whether the body had a contact in the last step."""
+    found: list[pymunk.Arbiter] = []
+    body.each_arbiter(found.append)
+    return bool(found)

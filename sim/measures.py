@@ -107,9 +107,14 @@ def _reader(measure: Measure, world: World) -> Callable[[], float]:
         return lambda: contacts.first if measure.quantity == "first-contact" else contacts.overlap
     if measure.quantity == "kinetic-energy":
         bodies = world.bodies_called(measure.of)
-        return lambda: sum(body.kinetic_energy for body in bodies)
+        return lambda: sum(_kinetic_energy(body) for body in bodies)
     body, point = world.point_called(measure.of)
     return _of_point(measure.quantity, body, point)
+
+
+def _kinetic_energy(body: pymunk.Body) -> float:
+    """[J]; pymunk's own is twice that."""
+    return 0.5 * (body.mass * body.velocity.length_squared + body.moment * body.angular_velocity**2)
 
 
 def _of_point(quantity: str, body: pymunk.Body, point: tuple[float, float]) -> Callable[[], float]:

@@ -9,7 +9,7 @@ import pymunk
 
 from capacity import InputError
 from scene import Member, Scene, Simulation
-from sim.contact_watch import ContactWatch
+from sim.contact_watch import ContactWatch, is_touching
 from sim.direct_joints import add_joints
 from sim.first_touch import first_touches, hold_back
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits
@@ -51,6 +51,10 @@ class World:
         Simulated so far, and in all [s].
     dt : float
         [s]
+    part : float
+        Of it, that the last step took [s].
+    steps : int
+        Taken so far.
     push : PrescribedPush, optional
     bodies : dict[str, pymunk.Body]
         Loose ones.
@@ -75,7 +79,9 @@ class World:
         space.iterations = run.iterations if iterations is None else iterations
         space.collision_slop = run.collision_slop
         scheme = _SCHEMES[run.integration or ("average-acceleration" if scene.pushed is None else "implicit-euler")]
-        self.time = 0.0
+        self.time, self.steps = 0.0, 0
+        self.part, self._parts_left, self._fewest_parts = self.dt, 0, 1
+        self._largest_travel = run.largest_travel
         self._ramp = float(run.gravity_ramp)
         add_grounds(scene, space)
         self.bodies = add_bodies(scene, space)
@@ -133,31 +139,55 @@ class World:
         ]
 
     def _note_break(self, joint: DuctileJoint) -> None:
-        self.broken.append((self.time + self.dt, self.labels[joint]))
+        self.broken.append((self.time + self.part, self.labels[joint]))
 
     def step(self) -> None:
-        """One step of `dt`."""
-        share = min(1.0, (self.time + self.dt) / self._ramp) if self._ramp > 0.0 else 1.0
+        """One step of `dt`, or one of the parts that it is cut into."""
+        if self._parts_left == 0:
+            parts = self._parts()
+            self.part, self._parts_left = self.dt / parts, parts
+        self._parts_left -= 1
+        h, end = self.part, self.time + self.part
+        share = min(1.0, end / self._ramp) if self._ramp > 0.0 else 1.0
         self.space.gravity = (0.0, -share * self.scene.gravity)
         if self._loads is not None:
-            self._loads.act(self.time + self.dt, share)
+            self._loads.act(end, share)
         for car in self.cars.values():
             car.drive(self.time)
-        touch = self.dt
-        loose = [body for body in self._continuous if not body.constraints]
-        for found in first_touches(self.space, loose, self.dt):
-            hold_back(found, self.dt)
+        touch = h
+        for found in first_touches(self.space, self._loose(), h):
+            hold_back(found, h)
             touch = min(touch, found.time)
         if self.push is not None:
-            self.push.aim(self.time + self.dt, self.dt)
-        self.space.step(self.dt)
+            self.push.aim(end, h)
+        self.space.step(h)
+        self.steps += 1
         for contacts in self._contacts:
             contacts.note(self.time + touch)
-        self.time += self.dt
+        self.time = end
         if self.push is not None:
-            self.push.read(self.time, self.dt)
+            self.push.read(end, h)
         for watch in self._watches.values():
             watch.note()
+
+    def _loose(self) -> list[pymunk.Body]:
+        """Continuous bodies that nothing is joined to."""
+        return [body for body in self._continuous if not body.constraints]
+
+    def _parts(self) -> int:
+        """Into how many parts the next step is cut, never fewer than before: a power of two.
+
+        The forces of a step are those at the end of a move of the same length. A longer move would carry yielding
+        joints beyond where their forces were found, so the parts do not grow again.
+        """
+        if self._largest_travel is None:
+            return 1
+        meeting = {found.body for found in first_touches(self.space, self._loose(), self.dt)}
+        meeting |= {body for body in self._loose() if is_touching(body)}
+        fastest = max((body.velocity.length for body in meeting), default=0.0)
+        wanted = math.ceil(math.log2(max(1.0, fastest * self.dt / self._largest_travel)) - 1e-9)
+        self._fewest_parts = max(self._fewest_parts, 2**wanted)
+        return self._fewest_parts
 
     @property
     def finished(self) -> bool:

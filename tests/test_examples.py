@@ -11,6 +11,7 @@ EXAMPLES = {
     "02_reference": (29.375, 0.001),  # kN: b h² fy / 4 L
     "03_joints_in_a_space": (-0.80, 0.01),  # rad: work of the load beyond M_max over M_max, see the docstring
     "04_calibrate": (0.67, 0.01),  # % of the peak load
+    "05_car_on_ramp": (16.3, 0.5),  # %: the original's own code at the same step
 }
 
 

@@ -89,6 +89,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
         integers(t[at.BODY_VALUES], length),
         integers(t[at.PLACES], PLACE_WORDS * room).reshape(room, PLACE_WORDS),
         table(t[at.TOUCHES], room, TOUCH_WORDS),
+        h,
     )
 
 

@@ -32,6 +32,8 @@ from sim.chipmunk import (
     BIAS_SPIN,
     BIAS_VX,
     BODY_FULL_WORDS,
+    BODY_SPACE,
+    BODY_WORDS,
     CONTACT_BIAS,
     CONTACT_BOUNCE,
     CONTACT_BYTES,
@@ -44,13 +46,20 @@ from sim.chipmunk import (
     CONTACT_WORDS,
     MASS_INVERSE,
     MOMENT_INVERSE,
+    SPACE_SLOP,
+    SPACE_WORDS,
     SPIN,
     VX,
+    X,
 )
 from sim.kernels.blocks import substitute
 from sim.memory import floats, integers
 
 _SWEEPS = 200
+# Share of the way to the overlap that a space allows that a pressed contact may sink in a step. Where surfaces turn,
+# their distance changes with the square of the step; a contact that kept none of that overlap would be lost, and found
+# again a step of free motion later.
+_SETTLE = 0.5
 
 # Integer record of a contact: its address, bodies a and b (index in the structure, -1 for others), their addresses.
 WHERE, INDEX_A, INDEX_B, BODY_A, BODY_B = 0, 1, 2, 3, 4
@@ -73,9 +82,10 @@ def find(body, keys, values):  # type: ignore[no-untyped-def]
 
 
 @njit(error_model="numpy")
-def collect(moving, body_at, keys, values, places, touches):  # type: ignore[no-untyped-def]
+def collect(moving, body_at, keys, values, places, touches, h):  # type: ignore[no-untyped-def]
     """Take over the contacts of this step; returns how many, and how many there was no room for."""
     count, missed = 0, 0
+    slop = floats(integers(body_at[0], BODY_FULL_WORDS)[BODY_SPACE], SPACE_WORDS)[SPACE_SLOP] if moving > 0 else 0.0
     for i in range(moving):
         own = body_at[i]
         arbiter = integers(own, BODY_FULL_WORDS)[ARBITERS]
@@ -105,13 +115,25 @@ def collect(moving, body_at, keys, values, places, touches):  # type: ignore[no-
                 t[ARM_B], t[ARM_B + 1] = c[CONTACT_R2], c[CONTACT_R2 + 1]
                 t[FRICTION] = f[ARBITER_FRICTION]
                 t[SURFACE] = -ny * f[ARBITER_SURFACE] + nx * f[ARBITER_SURFACE + 1]
+                spare = slop + overlap_less(w, c, nx, ny)
                 t[WANTED] = -c[CONTACT_BOUNCE]
+                if t[WANTED] == 0.0 and spare > 0.0:
+                    t[WANTED] = -_SETTLE * spare / h
                 t[PUSH] = c[CONTACT_BIAS]
                 c[CONTACT_NORMAL_MASS] = 0.0
                 c[CONTACT_TANGENT_MASS] = 0.0
                 count += 1
             arbiter = w[ARBITER_NEXT_A] if is_a else w[ARBITER_NEXT_B]
     return count, missed
+
+
+@njit(inline="always", error_model="numpy")
+def overlap_less(arbiter, contact, nx, ny):  # type: ignore[no-untyped-def]
+    """Distance of the two surfaces at a contact, negative where they overlap [m]."""
+    a, b = floats(arbiter[ARBITER_BODY_A], BODY_WORDS), floats(arbiter[ARBITER_BODY_B], BODY_WORDS)
+    x = b[X] + contact[CONTACT_R2] - a[X] - contact[CONTACT_R1]
+    y = b[X + 1] + contact[CONTACT_R2 + 1] - a[X + 1] - contact[CONTACT_R1 + 1]
+    return nx * x + ny * y
 
 
 @njit(inline="always", error_model="numpy")

@@ -1,0 +1,67 @@
+"""The car on the ramp, against the equation of motion of the ramp let go, and the original's figures.
+
+The paper says 13 % of plastic capacity for own weight, 50 % after the first jump and 7 % for each further one; its code
+16.3, 53.6 and 7.3 % at 1/1000 s. Half of the first figure and all of the last come of how that joint counts, see
+``examples/05_car_on_ramp.py`` and the documentation of the scenes.
+"""
+
+import importlib.util
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+MASS, ARM, INERTIA = 2160.0, 9.0, 58320.0 + 2160.0 * 81.0
+STIFFNESS = (2.0 * math.pi) ** 2 * 58320.0
+DAMPING = 2.0 * 0.2 * 2.0 * math.pi * 58320.0
+ELASTIC, LIMIT = 0.12, 0.4
+
+_spec = importlib.util.spec_from_file_location(
+    "car_on_ramp", Path(__file__).parent.parent / "examples" / "05_car_on_ramp.py"
+)
+assert _spec is not None
+assert _spec.loader is not None
+example = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(example)
+
+
+def own_weight_share() -> float:
+    """Of the ramp let go: I θ'' = m g a cos θ - c θ' - min(k (θ - p), M_max), up to where it stops first [%]."""
+
+    def motion(_: float, y: np.ndarray) -> list[float]:
+        turned, speed = y
+        spring = STIFFNESS * min(turned, ELASTIC)
+        return [speed, (MASS * 10.0 * ARM * math.cos(turned) - DAMPING * speed - spring) / INERTIA]
+
+    def stops(_: float, y: np.ndarray) -> float:
+        return float(y[1])
+
+    stops.terminal, stops.direction = True, -1  # type: ignore[attr-defined]
+    found = solve_ivp(motion, (0.0, 5.0), [0.0, 0.0], events=stops, rtol=1e-10, atol=1e-12)
+    return 100.0 * (float(found.y[0, -1]) - ELASTIC) / LIMIT
+
+
+def test_own_weight_follows_the_equation_of_motion_at_any_step() -> None:
+    exact = own_weight_share()
+    assert exact == pytest.approx(8.27, abs=0.01)
+    for dt in (1 / 60, 1 / 120, 1 / 240, 1 / 1000):
+        assert example.shares(dt, 0, original=False)[0] == pytest.approx(exact, rel=0.01)
+
+
+def test_jumps_at_60_hz_are_within_a_tenth_of_the_converged_ones() -> None:
+    """The first jump bends the ramp until its tip lies on the ground, 0.28 rad down; there it stays."""
+    coarse, fine = example.shares(1 / 60, 2, original=False), example.shares(1 / 1000, 2, original=False)
+    assert coarse == pytest.approx(fine, rel=0.1)
+    on_the_ground = 100.0 * (math.asin(5.0 / 18.0) - ELASTIC) / LIMIT
+    assert fine[1] == pytest.approx(on_the_ground, abs=1.0)
+    assert fine[2] == pytest.approx(on_the_ground, abs=1.0)
+
+
+def test_the_same_scene_gives_the_original_s_figures_with_the_original_s_joint() -> None:
+    """16.3, 53.6 and 7.3 %: within 2, 5 and 2 points."""
+    own, first, second = example.shares(1 / 1000, 2, original=True)
+    assert own == pytest.approx(16.3, abs=2.0)
+    assert first == pytest.approx(53.6, abs=5.0)
+    assert second - first == pytest.approx(7.3, abs=2.0)

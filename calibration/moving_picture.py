@@ -26,6 +26,11 @@ _UTILISATION = LinearSegmentedColormap.from_list("utilisation", [(0.0, "#dfe9f2"
 _DOTS_AN_INCH = 100
 _WIDTH, _LEAST_HEIGHT, _MOST_HEIGHT = 8.0, 3.0, 6.0
 _SEGMENTS_A_QUARTER = 8
+_MARGIN = 0.06
+# Everything may be so many times as large as the structure to be shown.
+_FAR = 4.0
+# Share of positions on either side that may lie outside the picture.
+_STRAYED = 0.02
 _FRAMES_A_SECOND = 20
 _COLOURS = 64
 # A film lasts about so long at least, and at most [s].
@@ -88,23 +93,38 @@ class Picture:
         return np.array(places).reshape(-1, 2)
 
     def _extent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest and highest x, y of all that moves or is joined, with a margin; of everything when nothing is."""
-        recording = self.recording
-        points = [self._joint_places(k) for k in range(len(recording.time))]
-        for body, outlines, pose in zip(
-            recording.bodies, self._outlines, np.moveaxis(recording.pose, 1, 0), strict=True
-        ):
-            if body.kind != "static" and outlines:
-                reach = max(np.hypot(*outline.T).max() for outline in outlines)
-                points += [pose[:, :2] - reach, pose[:, :2] + reach]
-        whole = np.concatenate([*points, np.zeros((0, 2))])
-        if not np.isfinite(whole).any():
-            whole = np.concatenate(
-                [*(outline for outlines in self._outlines for outline in outlines), [[-1, -1], [1, 1]]]
+        """Lowest and highest x, y to show, with a margin.
+
+        Everything that moves or is joined, where it is most of the time; but when that is much larger than the
+        structure, the structure and what is near it.
+        """
+        joints = np.array([self._joint_places(k) for k in range(len(self.recording.time))])
+        bodies = [
+            pose[:, None, :2] + side * max(np.hypot(*outline.T).max() for outline in outlines)
+            for body, outlines, pose in zip(
+                self.recording.bodies, self._outlines, np.moveaxis(self.recording.pose, 1, 0), strict=True
             )
-        low, high = np.nanmin(whole, axis=0), np.nanmax(whole, axis=0)
-        margin = 0.06 * (high - low).max()
+            if body.kind != "static" and outlines
+            for side in (-1.0, 1.0)
+        ]
+        everything = np.concatenate([joints, *bodies], axis=1)
+        low, high = _span(everything)
+        if joints.size:
+            near = _span(joints)
+            size = float((near[1] - near[0]).max())
+            if 0.0 < _FAR * size < float((high - low).max()):
+                low, high = near[0] - size, near[1] + size
+        margin = _MARGIN * (high - low).max()
         return low - margin, high + margin
+
+
+def _span(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest x, y of points (t, n, 2) at the start, and most of the time later."""
+    if not np.isfinite(points).any():
+        return np.array([-1.0, -1.0]), np.array([1.0, 1.0])
+    low, high = np.nanquantile(points, [_STRAYED, 1.0 - _STRAYED], axis=(0, 1))
+    start = points[0][np.isfinite(points[0]).all(axis=1)]
+    return start.min(axis=0, initial=math.inf).clip(max=low), start.max(axis=0, initial=-math.inf).clip(min=high)
 
 
 def write_still(recording: Recording, k: int, path: Path) -> None:

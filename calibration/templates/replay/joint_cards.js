@@ -64,6 +64,13 @@ class JointCards {
       for (let i = 0; i < 5; i++) row.insertCell();
       row.cells[0].textContent = name;
     }
+    // The last row says in its wide cells what needs no number.
+    const { cells } = table.rows[4];
+    cells[0].colSpan = 2;
+    cells[3].colSpan = 2;
+    cells[3].className = "broken";
+    cells[4].remove();
+    cells[1].remove();
     card.append(head, table);
     return card;
   }
@@ -79,8 +86,8 @@ class JointCards {
           withUnit(most, unit), withUnit(joint.peak[kind], unit));
       });
       const note = recording.broken(j, k) ? `broken at ${seconds(recording.time[joint.brokenFrom], 0.01)}` : "";
-      fill(rows[3], "", recording.used(j, k), note, "");
-      rows[3].cells[3].className = "broken";
+      showShare(rows[3].cells[1], recording.used(j, k));
+      rows[3].cells[2].textContent = note;
     });
   }
 
@@ -106,13 +113,17 @@ class JointCards {
   }
 }
 
-// A row of numbers: the value now, its share of what is possible with a gauge, that maximum, the peak.
+// A row of numbers: the value now, its share of what is possible, that maximum, the peak.
 function fill(row, now, share, most, peak) {
-  [now, share === null ? "" : percent(share), most, peak].forEach((text, i) => { row.cells[i + 1].textContent = text; });
-  if (share === null) return;
+  [now, "", most, peak].forEach((text, i) => { row.cells[i + 1].textContent = text; });
+  if (share !== null) showShare(row.cells[2], share);
+}
+
+// A share in words and as a gauge.
+function showShare(cell, share) {
   const gauge = document.createElement("div"), bar = document.createElement("i");
   gauge.className = "gauge";
   bar.style.width = `${100 * Math.min(1, share)}%`;
   gauge.append(bar);
-  row.cells[2].append(gauge);
+  cell.replaceChildren(percent(share), gauge);
 }

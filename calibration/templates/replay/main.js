@@ -122,6 +122,7 @@ function connect(recording, player, stage, cards, redraw) {
   byId("zoom-in").addEventListener("click", () => stage.camera.zoom(1.4));
   byId("zoom-out").addEventListener("click", () => stage.camera.zoom(1 / 1.4));
   byId("fit").addEventListener("click", () => stage.fit());
+  byId("fit-all").addEventListener("click", () => stage.fitAll());
   byId("reference").addEventListener("change", (event) => { stage.showReference = event.target.checked; redraw(); });
   byId("force-scale").addEventListener("input", (event) => {
     stage.forces.scale = 10 ** Number(event.target.value);
@@ -150,6 +151,7 @@ function connect(recording, player, stage, cards, redraw) {
     "=": () => stage.camera.zoom(1.4),
     "-": () => stage.camera.zoom(1 / 1.4),
     f: () => stage.fit(),
+    a: () => stage.fitAll(),
     n: () => flip("N"), q: () => flip("Q"), m: () => flip("M"), c: () => flip("contact"),
     ",": () => nextJoint(-1),
     ".": () => nextJoint(1),

@@ -1,12 +1,17 @@
 // The picture: bodies to scale, joints, contacts, the reference's shape.
 
+// Everything may be so many times as large as the structure to be shown at first.
+const FAR = 4;
+// Share of positions on either side that may lie outside the picture.
+const STRAYED = 0.02;
 const FORCE_KINDS = ["N", "Q", "M"];
 
 class Stage {
   constructor(canvas, recording, palette) {
     Object.assign(this, { canvas, recording, palette });
     this.camera = new Camera(canvas);
-    this.bounds = this.extent();
+    this.bounds = this.extent(true);
+    this.structureBounds = this.extent(false);
     this.structureSize = this.sizeOfStructure();
     this.forces = new ForceDrawing(recording, this.structureSize);
     this.showReference = true;
@@ -19,42 +24,51 @@ class Stage {
     if (this.camera.fitted) this.fit();
   }
 
-  fit() { this.camera.fit(this.bounds); }
+  // What to show at first: everything, unless that makes the structure small; then the structure and what is near it.
+  fit() {
+    const [x0, y0, x1, y1] = this.structureBounds, size = Math.max(x1 - x0, y1 - y0);
+    const all = Math.max(this.bounds[2] - this.bounds[0], this.bounds[3] - this.bounds[1]);
+    if (size > 0 && all > FAR * size) this.camera.fit([x0 - size, y0 - size, x1 + size, y1 + size]);
+    else this.camera.fit(this.bounds);
+  }
 
-  // Rectangle around all that moves or is joined; what stands still is background and may reach far beyond.
-  extent() {
-    const { recording } = this, box = [Infinity, Infinity, -Infinity, -Infinity];
-    const include = ([x, y], r = 0) => {
-      box[0] = Math.min(box[0], x - r); box[1] = Math.min(box[1], y - r);
-      box[2] = Math.max(box[2], x + r); box[3] = Math.max(box[3], y + r);
-    };
-    const every = Math.max(1, Math.floor(recording.time.length / 60));
+  fitAll() { this.camera.fit(this.bounds); }
+
+  // Rectangle around where bodies and joints are: at the start, and most of the time later. What stands still is
+  // background and may reach far beyond, and so may a fragment.
+  extent(withBodies) {
+    const { recording } = this, xs = [], ys = [];
+    const include = ([x, y], r = 0) => { xs.push(x - r, x + r); ys.push(y - r, y + r); };
     const reach = recording.bodies.map((body) => Math.max(0, ...body.outlines.flatMap((outline) =>
       outline.points.map(([x, y]) => Math.hypot(x, y) + outline.radius))));
-    for (let k = 0; k < recording.time.length; k += every) {
+    const at = (k) => {
       const moment = { k, next: k, share: 0 };
-      recording.bodies.forEach((body, i) => {
+      recording.joints.forEach((_, j) => { const place = recording.place(j, moment); if (place) include(place.a); });
+      if (withBodies) recording.bodies.forEach((body, i) => {
         const pose = body.kind === "static" ? null : recording.pose(i, moment);
         if (pose) include(pose, reach[i]);
       });
-      recording.joints.forEach((_, j) => {
-        const place = recording.place(j, moment);
-        if (place) { include(place.a); include(place.b); }
-      });
-    }
-    if (!Number.isFinite(box[0])) {
-      for (const body of recording.bodies) for (const outline of body.outlines) outline.points.forEach((p) => include(p));
-    }
-    return Number.isFinite(box[0]) ? box : [-1, -1, 1, 1];
+    };
+    at(0);
+    const [startX, startY] = [xs, ys].map((values) => [Math.min(...values), Math.max(...values)]);
+    const every = Math.max(1, Math.floor(recording.time.length / 60));
+    for (let k = every; k < recording.time.length; k += every) at(k);
+    if (xs.length === 0) return [-1, -1, 1, 1];
+    const [x, y] = [[xs, startX], [ys, startY]].map(([values, [low, high]]) => {
+      values.sort((one, other) => one - other);
+      const rank = (share) => values[Math.round(share * (values.length - 1))];
+      return [Math.min(low, rank(STRAYED)), Math.max(high, rank(1 - STRAYED))];
+    });
+    return [x[0], y[0], x[1], y[1]];
   }
 
   // Diagonal around the joints at the start [m].
   sizeOfStructure() {
     const start = { k: 0, next: 0, share: 0 };
     const places = this.recording.joints.map((_, j) => this.recording.place(j, start)).filter(Boolean);
-    if (places.length === 0) return 1;
     const span = (i) => Math.max(...places.map((p) => p.a[i])) - Math.min(...places.map((p) => p.a[i]));
-    return Math.hypot(span(0), span(1)) || 0.3 * Math.hypot(this.bounds[2] - this.bounds[0], this.bounds[3] - this.bounds[1]);
+    const size = places.length > 0 ? Math.hypot(span(0), span(1)) : 0;
+    return size || 0.3 * Math.hypot(this.bounds[2] - this.bounds[0], this.bounds[3] - this.bounds[1]);
   }
 
   draw(moment, chosen) {

@@ -1,23 +1,32 @@
-"""What the continuum does: elastic–plastic beams and frames on scikit-fem, each answer with an error estimate."""
+"""What the continuum does: elastic–plastic frames and plane stress on scikit-fem, each with an error estimate."""
 
 from fem_reference.dynamics import MotionResult, motion
 from fem_reference.hinge_events import HingeEvent
 from fem_reference.member_results import MemberResult
 from fem_reference.modes import Modes, natural_modes
 from fem_reference.paths import NotConverged
+from fem_reference.plane import Fields, PlanePush, field_files, plane_push
+from fem_reference.push_over import default_tolerance, push_over
 from fem_reference.pushover import Energy, Pushover, pushover
-from fem_reference.validity import remarks
+from fem_reference.validity import remarks, wants_plane_stress
 
 __all__ = [
     "Energy",
+    "Fields",
     "HingeEvent",
     "MemberResult",
     "Modes",
     "MotionResult",
     "NotConverged",
+    "PlanePush",
     "Pushover",
+    "default_tolerance",
+    "field_files",
     "motion",
     "natural_modes",
+    "plane_push",
+    "push_over",
     "pushover",
     "remarks",
+    "wants_plane_stress",
 ]

@@ -19,6 +19,7 @@ from scene.actions import Load, LoadKind, Motion, Push
 from scene.bodies import GROUND, Body, Box, Circle, Ground, Joint, Polygon, Shape
 from scene.checks import check
 from scene.model import HELD, Member, MemberEnd, Node, Scene
+from scene.plane import EdgeSupport, Plane
 from scene.programme import Measure, Simulation
 from scene.reading import builtin_names, builtin_text, json_schema, load_scene, parse_scene
 from scene.simulation_checks import ALL_JOINTS
@@ -31,6 +32,7 @@ __all__ = [
     "Body",
     "Box",
     "Circle",
+    "EdgeSupport",
     "Ground",
     "Joint",
     "Load",
@@ -40,6 +42,7 @@ __all__ = [
     "MemberEnd",
     "Motion",
     "Node",
+    "Plane",
     "Polygon",
     "Push",
     "Scene",

@@ -8,6 +8,7 @@ import math
 from capacity import InputError
 from scene.actions import Load, Motion, Push
 from scene.model import Scene
+from scene.plane import check_plane
 from scene.simulation_checks import check_simulation
 
 
@@ -20,6 +21,10 @@ def check(scene: Scene) -> Scene:
         When a name is unknown, a member has no length, nothing is supported, a load is nowhere or nothing, the push
         goes nowhere, a motion has no cause, or a body has no mass.
     """
+    if scene.plane is not None:
+        check_plane(scene.plane)
+    if scene.meshed is not None:
+        return _check_meshed(scene)
     _check_members(scene)
     for name, node in scene.nodes.items():
         _check_node(scene, name)
@@ -43,6 +48,22 @@ def check(scene: Scene) -> Scene:
 
 def _is_supported(scene: Scene) -> bool:
     return any(any(node.held) or node.spring is not None for node in scene.nodes.values())
+
+
+def _check_meshed(scene: Scene) -> Scene:
+    for key in ("nodes", "members", "loads", "motion", "simulation"):
+        if getattr(scene, key):
+            raise InputError(
+                key, "a mesh stands in place of nodes, members and loads", f"take {key} out, or plane.mesh"
+            )
+    if scene.reference == "beam":
+        raise InputError("reference", "beams do not follow a mesh", 'write "plane-stress", or take it out')
+    if scene.kinematics != "small":
+        raise InputError("kinematics", "a mesh is followed in small displacements only", 'write "small"')
+    if scene.pushed is None:
+        raise InputError("push", "nothing happens in the scene", 'add a table [push] with node = "right", say')
+    _check_way(scene.pushed)
+    return scene
 
 
 def _check_members(scene: Scene) -> None:
@@ -129,6 +150,13 @@ def _check_direction(direction: tuple[float, float], place: str) -> None:
 
 def _check_push(scene: Scene, push: Push) -> None:
     _check_known(scene, push.node, "push.node")
+    _check_way(push)
+    held = scene.nodes[push.node].held
+    if any(component != 0.0 and stops for component, stops in zip(push.direction, held, strict=False)):
+        raise InputError("push.node", f'node "{push.node}" is supported', "push a node that is free to move that way")
+
+
+def _check_way(push: Push) -> None:
     _check_direction(push.direction, "push.direction")
     if push.turning_points:
         if push.distance != 0.0:
@@ -138,9 +166,6 @@ def _check_push(scene: Scene, push: Push) -> None:
             raise InputError("push.turning_points", "a turning point repeats the one before", "take it out")
     elif push.distance <= 0.0:
         raise InputError("push.distance", "it must be greater than zero", 'write a length such as "75 mm"')
-    held = scene.nodes[push.node].held
-    if any(component != 0.0 and stops for component, stops in zip(push.direction, held, strict=False)):
-        raise InputError("push.node", f'node "{push.node}" is supported', "push a node that is free to move that way")
 
 
 def _check_motion(scene: Scene, motion: Motion) -> None:

@@ -10,6 +10,7 @@ import msgspec
 from capacity import Capacity, InputError, Material, Section, capacity
 from scene.actions import Load, LoadKind, Motion, Push, unit_vector
 from scene.bodies import Body, Coefficient, Ground, Joint
+from scene.plane import Plane
 from scene.programme import Measure, Simulation
 from scene.quantities import Acceleration, Angle, Length, Mass, RotationalStiffness, Speed, Stiffness, si
 from scene.vehicles import Vehicle
@@ -124,6 +125,11 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     kinematics : str
         ``"small"`` displacements, ``"p-delta"``: equilibrium where the structure has moved to, rotations small, or
         ``"large"`` displacements and rotations.
+    reference : str
+        What the finite-element reference follows: ``"beam"`` elements, a ``"plane-stress"`` continuum, or what
+        `fem_reference` holds to be right, ``"auto"``.
+    plane : Plane, optional
+        What only a plane stress reference needs to know.
     """
 
     title: str
@@ -141,6 +147,13 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     gravity: Acceleration = si(9.81)
     criterion: Literal["tresca", "von-mises"] = "von-mises"
     kinematics: Kinematics = "small"
+    reference: Literal["auto", "beam", "plane-stress"] = "auto"
+    plane: Plane | None = None
+
+    @property
+    def meshed(self) -> Plane | None:
+        """`plane` where a mesh stands in place of members."""
+        return self.plane if self.plane is not None and self.plane.mesh is not None else None
 
     @property
     def push(self) -> Push:

@@ -73,7 +73,7 @@ def test_bad_input_gives_status_2(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_short_members_and_long_pushes_are_remarked(capsys: pytest.CaptureFixture[str]) -> None:
-    text = builtin_text("cantilever").replace('"1 m"', '"0.4 m"')
+    text = 'reference = "beam"\n' + builtin_text("cantilever").replace('"1 m"', '"0.4 m"')
     Path("short.toml").write_text(text, encoding="utf-8")
     ductile("reference", "short.toml", "--json")
     said = json.loads(capsys.readouterr().out)["remarks"]

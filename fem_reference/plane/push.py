@@ -1,0 +1,198 @@
+"""The plane stress answer to a push: a curve, where the work went, and how wrong each may be."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.hinge_events import HingeEvent
+from fem_reference.legs import even_legs, resolved_legs
+from fem_reference.plane.bodies import plane_scene
+from fem_reference.plane.continuum import Continuum, State
+from fem_reference.plane.path import Trace, trace
+from fem_reference.pushover import Energy
+from scene import Scene
+
+#: Points at which the load is quoted, on the path or, of one that turns, on each leg.
+POINTS, POINTS_A_LEG = 60, 30
+#: Points at which the fields are kept.
+SNAPSHOTS = 13
+#: The error that is aimed at when nothing else is said: what the plastic hinge of a perfectly plastic clamp allows in
+#: reasonable time.
+TOLERANCE = 2e-3
+#: The error of a plastic hinge or a clamp falls in proportion to the size of its elements, which is at least halved
+#: from mesh to mesh: what the finer mesh lacks is what the last refinement brought. The factor of safety on that is the
+#: one of Roache's grid convergence index.
+SAFETY = 1.25
+#: A path is level when its last slope is below this share of its first.
+_LEVEL = 1e-4
+
+
+@dataclass(frozen=True)
+class Fields:
+    """Whole states along a path.
+
+    Attributes
+    ----------
+    continuum : Continuum
+    displacement : tuple of float
+        Of the pushed edge, at each [m].
+    states : tuple of State
+    """
+
+    continuum: Continuum
+    displacement: tuple[float, ...]
+    states: tuple[State, ...]
+
+
+@dataclass(frozen=True)
+class PlanePush:
+    """A load–displacement curve of a plane stress body with its estimated error.
+
+    Attributes
+    ----------
+    method : str
+        What was solved, in words.
+    displacement : (k,) float
+        Displacement of the pushed edge along the push [m], from 0.
+    load : (k,) float
+        Force on it along the push [N]; with proportional loads in the scene, their load factor.
+    error_estimate : float
+        Largest difference from the curve on the next coarser mesh, over the largest load, times `SAFETY` [-]. Never
+        less than what is out of balance.
+    elements : int
+        Of the finest mesh.
+    seconds : float
+        Time that all meshes took.
+    hinges : tuple of HingeEvent
+        Of a cantilever without dead loads that is pushed across: where the moment at its root passes M_pl.
+    outcome : str
+        How the path ended.
+    residual, residual_error : float
+        Displacement at the end of an unloaded path, or the last displacement of another, and its estimated
+        error [m].
+    energy : Energy
+    imbalance : float
+        Largest sum of the out-of-balance forces, over the largest load [-].
+    fields : Fields
+        States on the finest mesh.
+    """
+
+    method: str
+    displacement: np.ndarray
+    load: np.ndarray
+    error_estimate: float
+    elements: int
+    seconds: float
+    hinges: tuple[HingeEvent, ...]
+    outcome: str
+    residual: float
+    residual_error: float
+    energy: Energy
+    imbalance: float
+    fields: Fields
+
+
+def plane_push(
+    scene: Scene, tolerance: float = TOLERANCE, watch: Callable[[float], None] = lambda share: None
+) -> PlanePush:
+    """Push ``scene`` on finer and finer meshes until the estimated error is at most ``tolerance``.
+
+    Parameters
+    ----------
+    scene : Scene
+    tolerance : float
+        Largest error of the load, as a share of the largest load [-].
+    watch : callable
+        Told the finished share of the current mesh's path.
+
+    Returns
+    -------
+    PlanePush
+        From the finest mesh; its ``error_estimate`` says whether ``tolerance`` was met. A path that finds no
+        equilibrium any more ends there, and ``outcome`` says so.
+
+    Raises
+    ------
+    InputError
+        When plane stress cannot follow the scene, or its mesh cannot be used.
+    NotConverged
+        When the dead loads find no equilibrium.
+    """
+    started = time.perf_counter()
+    found = plane_scene(scene)
+    stops = scene.push.stops()
+    legs = even_legs(stops, POINTS if len(stops) == 1 else POINTS_A_LEG)
+
+    def solve(level: int, last: bool) -> tuple[Continuum, Trace]:
+        body = found.body(level)
+        path = trace(body, legs, unload=scene.push.unload, snapshots=SNAPSHOTS if last else 0, watch=watch)
+        return body.continuum, path
+
+    _, first = solve(0, False)
+    legs = resolved_legs(stops, legs, np.array(first.load))
+    _, coarse = solve(0, False)
+    for level in range(1, found.levels):
+        continuum, fine = solve(level, True)
+        error = max(SAFETY * _difference(fine.load, coarse.load), fine.imbalance)
+        if error <= tolerance or level == found.levels - 1:
+            break
+        coarse = fine
+    pairs = ((fine.external, coarse.external), (fine.elastic, coarse.elastic), (fine.plastic, coarse.plastic))
+    scale = max(map(abs, fine.external))
+    external, elastic, plastic = (np.array(values) for values, _ in pairs)
+    load = np.array(fine.load) / found.unit_load
+    kind = "triangles" if continuum.mesh.cells.shape[1] == 6 else "quadrilaterals"
+    return PlanePush(
+        method=f"plane stress continuum, J2 plasticity, quadratic {kind}, small displacements: {found.described}",
+        displacement=np.array(fine.displacement),
+        load=load,
+        error_estimate=error,
+        elements=len(continuum.mesh.cells),
+        seconds=time.perf_counter() - started,
+        hinges=_hinges(scene, np.array(fine.displacement), load, found.unit_load, error),
+        outcome=fine.stopped or _outcome(scene, fine),
+        residual=fine.displacement[-1],
+        residual_error=SAFETY * abs(fine.displacement[-1] - coarse.displacement[-1]),
+        energy=Energy(external, elastic, plastic, SAFETY * max(_difference(a, b, scale) for a, b in pairs)),
+        imbalance=fine.imbalance,
+        fields=Fields(continuum, tuple(at for at, _ in fine.snapshots), tuple(state for _, state in fine.snapshots)),
+    )
+
+
+def _difference(fine: list[float], coarse: list[float], scale: float = 0.0) -> float:
+    """Largest difference over ``scale``, or the largest value, along the part that both have; 1 when that is none."""
+    both = min(len(fine), len(coarse))
+    a, b = np.array(fine[:both]), np.array(coarse[:both])
+    return float(np.abs(a - b).max() / (scale or np.abs(a).max())) if both > 1 else 1.0
+
+
+def _hinges(
+    scene: Scene, displacement: np.ndarray, load: np.ndarray, unit: float, error: float
+) -> tuple[HingeEvent, ...]:
+    if scene.meshed is not None or scene.gravity or scene.loads_of("dead") or len(scene.push.stops()) > 1:
+        return ()
+    ((name, member),) = scene.members.items()
+    c, s, length = scene.axis(name)
+    dx, dy = scene.push_direction()
+    lever = abs(dy * c - dx * s) * length
+    if abs(dx * c + dy * s) > 1e-9 or any(scene.nodes[scene.push.node].held):
+        return ()
+    hinge = member.material.yield_stress * member.section.plastic_modulus / lever / unit
+    if load.max() < hinge:
+        return ()
+    k = int(np.argmax(load >= hinge))
+    at = float(np.interp(hinge, load[k - 1 : k + 1], displacement[k - 1 : k + 1]))
+    root, place = (member.start, 0.0) if scene.push.node == member.end else (member.end, length)
+    return (HingeEvent(name, place, root, hinge, at, error),)
+
+
+def _outcome(scene: Scene, path: Trace) -> str:
+    load, displacement = np.array(path.load), np.array(path.displacement)
+    slopes = np.diff(load) / np.diff(displacement)
+    if len(scene.push.stops()) == 1 and not scene.push.unload and abs(slopes[-1]) <= _LEVEL * slopes[0]:
+        return f"mechanism: the load stays at {load[-1]:.6g} N"
+    return "reached the end of its programme"

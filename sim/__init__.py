@@ -9,6 +9,7 @@ from sim.laws import ElasticPlastic, FibreSection, InteractionPlastic, Law, Rigi
 from sim.member_laws import LAWS  # noqa: E402
 from sim.members import Assembly, assemble  # noqa: E402
 from sim.model import Model  # noqa: E402
+from sim.motion import Course, follow  # noqa: E402
 from sim.pushover import Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
 from sim.rules import RULES, Rule, equal, lobatto, radau  # noqa: E402
@@ -20,6 +21,7 @@ __all__ = [
     "LAWS",
     "RULES",
     "Assembly",
+    "Course",
     "DuctileJoint",
     "ElasticPlastic",
     "FibreSection",
@@ -36,6 +38,7 @@ __all__ = [
     "Structure",
     "assemble",
     "equal",
+    "follow",
     "lobatto",
     "push_over",
     "radau",

@@ -12,7 +12,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import pymunk
 
 from sim.body_loads import BodyLoad
 from sim.pieces import NodePoint
@@ -33,9 +32,8 @@ class LoadDriver:
     def __init__(
         self, structure: Structure, loads: Sequence[BodyLoad], node: NodePoint, direction: tuple[float, float]
     ) -> None:
-        self._structure, self._loads, self._direction = structure, loads, np.array(direction)
-        self._body = node.body
-        self._anchor = pymunk.Vec2d(*node.point) - node.body.center_of_gravity
+        self._structure, self._loads, self._node, self._direction = structure, loads, node, np.array(direction)
+        self._centre = NodePoint(node.body, (node.body.center_of_gravity.x, node.body.center_of_gravity.y))
         self._index = {body: i for i, body in enumerate(structure.bodies)}
         self._origin = np.array(node.now())
         size = sum(load.force[0] ** 2 + load.force[1] ** 2 + load.moment**2 for load in loads)
@@ -48,34 +46,21 @@ class LoadDriver:
     def aim(self, wanted: float, dt: float) -> None:
         """Before a step of ``dt`` [s]: have the node at ``wanted`` [m] along its way at the step's end."""
         self._pattern = self._forces(dt)
-        here = float((self._ahead(dt) - self._origin) @ self._direction)
+        here = float((self._node.ahead(dt) - self._origin) @ self._direction)
         # The first step, without a way to go, finds the ratio.
         gap = self._ratio * (wanted - here) if self._ratio else self._first
         self._structure.drive(self._pattern, self._stiffness, gap)
 
     def read(self, dt: float) -> None:
         """After that step: where the node is, and by what the loads were multiplied."""
-        arm = self._ahead(dt) - self._centre_ahead(dt)
+        arm = self._node.ahead(dt) - self._centre.ahead(dt)
         x, y = self._direction
         response = self._structure.pattern_response
-        along_node = float(np.array([x, y, arm[0] * y - arm[1] * x]) @ response[self._index[self._body]])
+        along_node = float(np.array([x, y, arm[0] * y - arm[1] * x]) @ response[self._index[self._node.body]])
         if along_node > 0.0:
             self._ratio = float(np.sum(self._pattern * response)) / along_node
-        self.displacement = float((self._ahead(dt) - self._origin) @ self._direction)
+        self.displacement = float((self._node.ahead(dt) - self._origin) @ self._direction)
         self.factor = self._structure.load_factor
-
-    def _centre_ahead(self, dt: float) -> np.ndarray:
-        """Where the centre of the node's body will be when Chipmunk has moved it, first thing in the next step [m]."""
-        place, velocity = self._body.local_to_world(self._body.center_of_gravity), self._body.velocity
-        return np.array([place.x + dt * velocity.x, place.y + dt * velocity.y])
-
-    def _ahead(self, dt: float) -> np.ndarray:
-        """Where the node will be then [m]."""
-        angle = self._body.angle + dt * self._body.angular_velocity
-        c, s = math.cos(angle), math.sin(angle)
-        x, y = self._anchor
-        ahead: np.ndarray = self._centre_ahead(dt) + np.array([c * x - s * y, s * x + c * y])
-        return ahead
 
     def _forces(self, dt: float) -> np.ndarray:
         """Forces and moments of the loads about the bodies' centres, where these will be then."""

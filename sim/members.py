@@ -51,6 +51,8 @@ class Assembly:
         Where each node is.
     dead_loads : tuple of BodyLoad
         To be made to act before each step.
+    sudden_loads : tuple of BodyLoad
+        Those that a motion begins with; to be made to act before each of its steps.
     pattern : tuple of BodyLoad
         Proportional loads at a load factor of 1.
     """
@@ -62,12 +64,16 @@ class Assembly:
     places: tuple[JointPlace, ...]
     nodes: dict[str, NodePoint]
     dead_loads: tuple[BodyLoad, ...]
+    sudden_loads: tuple[BodyLoad, ...]
     pattern: tuple[BodyLoad, ...]
 
-    def step(self, dt: float, share: float = 1.0) -> None:
-        """Step the space by ``dt`` [s], with a share of the dead loads acting."""
+    def step(self, dt: float, share: float = 1.0, *, sudden: bool = False) -> None:
+        """Step the space by ``dt`` [s], with a share of the dead loads acting, and the sudden ones if wanted."""
         for load in self.dead_loads:
             load.act(share)
+        if sudden:
+            for load in self.sudden_loads:
+                load.act()
         self.space.step(dt)
 
 
@@ -125,6 +131,7 @@ def assemble(
         places=tuple(builder.places),
         nodes=nodes,
         dead_loads=body_loads(scene, "dead", builder.pieces.of, nodes),
+        sudden_loads=body_loads(scene, "step", builder.pieces.of, nodes),
         pattern=body_loads(scene, "proportional", builder.pieces.of, nodes),
     )
 

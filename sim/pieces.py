@@ -8,6 +8,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
 import pymunk
 
 from scene import Scene
@@ -39,6 +40,13 @@ class NodePoint:
         """Where the node is [m]."""
         x, y = self.body.local_to_world(self.point)
         return x, y
+
+    def ahead(self, dt: float) -> np.ndarray:
+        """Where it will be when Chipmunk has moved the body, first thing in the next step of ``dt`` [s], (2,) [m]."""
+        body = self.body
+        arm = pymunk.Vec2d(*self.point) - body.center_of_gravity
+        centre = body.local_to_world(body.center_of_gravity) + dt * body.velocity
+        return np.array(centre + arm.rotated(body.angle + dt * body.angular_velocity))
 
 
 class Pieces:

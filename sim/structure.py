@@ -219,6 +219,18 @@ class Structure:
         return float(self._settings[at.SPREAD_IMPULSE] / self._settings[at.STEP])
 
     @property
+    def scheme(self) -> tuple[float, float]:
+        """β and δ of the time integration; may be changed between steps."""
+        beta, delta = self._settings[[at.BETA, at.DELTA]].tolist()
+        return beta, delta
+
+    @scheme.setter
+    def scheme(self, scheme: tuple[float, float]) -> None:
+        self._settings[[at.BETA, at.DELTA]] = scheme
+        for joint in self.joints:
+            joint.scheme = scheme
+
+    @property
     def deformation(self) -> np.ndarray:
         """Extension, slip and rotation of each joint at the end of the last step, (n, 3) [m, m, rad]."""
         return self._result[:, 0:3].copy()

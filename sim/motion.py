@@ -1,0 +1,153 @@
+"""A scene's motion in time with rigid bodies: where a node goes after a blow, a fall or a sudden load."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pymunk
+
+from capacity import InputError
+from scene import Motion, Scene
+from scene.actions import unit_vector
+from sim.joint import IMPLICIT_EULER
+from sim.members import Assembly, assemble
+from sim.model import Model
+from sim.settling import SETTLING_STEP, settle
+from sim.structure import SolverError
+
+# What counts as rest after a motion, as a share of its peak a step; and for how many steps it is waited for.
+_REST = 1e-7
+_MOST_STEPS_TO_REST = 20_000
+_LENGTHEN = 1.02
+
+
+@dataclass(frozen=True)
+class Course:
+    """A node's motion in time.
+
+    Attributes
+    ----------
+    node : str
+        Whose displacement it is.
+    time : (k,) float
+        [s], from 0.
+    displacement : (k,) float
+        Along the watched direction since the start [m].
+    peak, peak_time : float
+        Largest displacement by size [m], and when [s].
+    residual : dict[str, (float, float)]
+        Displacements x, y of each node once it is at rest under dead and step loads [m].
+    bodies, joints : int
+        Dynamic bodies, and joints of the members.
+    steps : int
+        Steps taken until the end of ``time``.
+    seconds : float
+        Time that those steps took.
+    unconverged : int
+        Solves that ended above the solver's tolerance.
+    dissipated : float
+        Plastic work in the joints, until rest [J].
+    """
+
+    node: str
+    time: np.ndarray
+    displacement: np.ndarray
+    peak: float
+    peak_time: float
+    residual: dict[str, tuple[float, float]]
+    bodies: int
+    joints: int
+    steps: int
+    seconds: float
+    unconverged: int
+    dissipated: float
+
+
+def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda share: None) -> Course:
+    """Follow ``scene``'s motion: from rest under dead loads, with the velocities and step loads that set it going.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : Model
+        Its ``scheme`` decides how much the time integration damps; its ``dt`` what it can resolve.
+    watch : callable
+        Told the finished share of the motion, 0 to 1.
+
+    Raises
+    ------
+    InputError
+        When the scene has no motion.
+    SolverError
+        When a step cannot be taken, or the scene does not come to rest before the motion or after it.
+    """
+    asked = scene.motion
+    if asked is None:
+        raise InputError("motion", "the scene has none", 'add [motion] with duration = "0.2 s"')
+    assembly = assemble(scene, model, shapes=False)
+    settle(scene, assembly, 1e-12)
+    structure = assembly.structure
+    set_going(scene, asked, assembly)
+    steps = max(1, round(float(asked.duration) / model.dt))
+    start = {name: np.array(node.now()) for name, node in assembly.nodes.items()}
+    paths = {name: np.zeros((steps + 1, 2)) for name in assembly.nodes}
+    seconds = 0.0
+    for k in range(steps):
+        began = time.perf_counter()
+        assembly.step(model.dt, sudden=True)
+        seconds += time.perf_counter() - began
+        for name, point in assembly.nodes.items():
+            paths[name][k + 1] = point.ahead(model.dt) - start[name]
+        if k % 64 == 0:
+            watch(k / steps)
+    along = {name: path @ unit_vector(asked.direction) for name, path in paths.items()}
+    node = asked.watch or max(along, key=lambda name: float(np.ptp(along[name])))
+    peak = int(np.argmax(np.abs(along[node])))
+    times, unconverged = model.dt * np.arange(steps + 1), structure.unconverged
+    _come_to_rest(assembly, model.dt, _REST * abs(float(along[node][peak])))
+    rest = {name: np.array(point.now()) - start[name] for name, point in assembly.nodes.items()}
+    return Course(
+        node=node,
+        time=times,
+        displacement=along[node],
+        peak=float(along[node][peak]),
+        peak_time=float(times[peak]),
+        residual={name: (float(x), float(y)) for name, (x, y) in rest.items()},
+        bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
+        joints=len(assembly.places),
+        steps=steps,
+        seconds=seconds,
+        unconverged=unconverged,
+        dissipated=float(structure.dissipated.sum()),
+    )
+
+
+def set_going(scene: Scene, asked: Motion, assembly: Assembly) -> None:
+    """Give the pieces the motion's velocity; a body fixed to a node brings its momentum to what the node is made of."""
+    for piece in assembly.pieces:
+        piece.body.velocity = (float(asked.velocity[0]), float(asked.velocity[1]))
+    for name, point in assembly.nodes.items():
+        node = scene.nodes[name]
+        if point.body in {piece.body for piece in assembly.pieces}:
+            continue
+        share = float(node.mass) / point.body.mass
+        own, brought = np.array(asked.velocity, dtype=float), np.array(node.velocity, dtype=float)
+        if not any(node.velocity):
+            brought = own
+        x, y = share * brought + (1.0 - share) * own
+        point.body.velocity = (float(x), float(y))
+
+
+def _come_to_rest(assembly: Assembly, dt: float, rest: float) -> None:
+    """Steps of implicit Euler, longer and longer: each damps the vibrations that it is long for, and no other."""
+    assembly.structure.scheme = IMPLICIT_EULER
+    for _ in range(_MOST_STEPS_TO_REST):
+        dt = min(_LENGTHEN * dt, SETTLING_STEP)
+        assembly.step(dt, sudden=True)
+        fastest = max(body.velocity.length for body in assembly.structure.bodies)
+        if dt == SETTLING_STEP and dt * fastest < rest:
+            return
+    raise SolverError("the scene does not come to rest after its motion; support it")

@@ -60,6 +60,8 @@ class DuctileJoint(pymunk.Constraint):
     turn : float, optional
         Share of b's rotation that the axes follow, the rest being a's; ½ between dynamic bodies, and otherwise none,
         so that they stay with the body that holds.
+    length : float
+        Of the member that the joint stands for [m]; bent, it reaches further than the kink that the joint makes.
     damping : (float, float, float)
         Viscous force over rate of deformation: N s/m, N s/m, N m s/rad.
     limits : Limits
@@ -83,6 +85,7 @@ class DuctileJoint(pymunk.Constraint):
         *,
         direction: float | None = None,
         turn: float | None = None,
+        length: float = 0.0,
         damping: tuple[float, float, float] = (0.0, 0.0, 0.0),
         limits: Limits = Limits(),
         scheme: tuple[float, float] = IMPLICIT_EULER,
@@ -105,7 +108,7 @@ class DuctileJoint(pymunk.Constraint):
         self.on_break = on_break
         rest = (direction - a.angle, direction - b.angle)
         axes = [f(angle) for angle in rest for f in (math.cos, math.sin)]
-        self.geometry = [*_anchor(a, self.at), *_anchor(b, self.at), *rest, turn, *axes]
+        self.geometry = [*_anchor(a, self.at), *_anchor(b, self.at), *rest, turn, *axes, length / 24.0]
         for what, values in (
             ("position or direction", self.geometry),
             ("stiffness", law.elastic_tangent()),

@@ -178,6 +178,7 @@ class _Builder:
                 law,
                 direction=math.atan2(s, c),
                 turn=0.5,
+                length=share,
                 damping=(self.model.damping * k[0], self.model.damping * k[3], self.model.damping * k[5]),
                 limits=self.limits.get(name, Limits()),
                 scheme=self.model.scheme,

@@ -37,7 +37,7 @@ def portal(
     ends = [space.static_body, *bodies, space.static_body] if clamped else bodies
     spots = points if clamped else points[1:-1]
     joints = [
-        DuctileJoint(a, b, tuple(at), law, direction=math.atan2(-at[0], at[1]), scheme=scheme)
+        DuctileJoint(a, b, tuple(at), law, direction=math.atan2(-at[0], at[1]), length=0.4, scheme=scheme)
         for a, b, at in zip(ends[:-1], ends[1:], spots, strict=True)
     ]
     joints.append(DuctileJoint(bodies[1], bodies[5], (0.0, 0.7), law, direction=0.0, scheme=scheme))
@@ -59,6 +59,7 @@ def twin_of(structure: Structure) -> Twin:
         anchors=np.array([j.geometry[:4] for j in structure.joints]).reshape(-1, 2, 2),
         rest=np.array([j.geometry[4:6] for j in structure.joints]),
         turn=np.array([j.turn for j in structure.joints]),
+        arc=np.array([j.geometry[11] for j in structure.joints]),
         stiffness=np.array([j.law.stiffness for j in structure.joints]),
         cap=np.array([j.law.capacity for j in structure.joints]),
     )

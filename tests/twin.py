@@ -10,7 +10,7 @@ class Twin:
     """Bodies and joints as arrays; fixed bodies have infinite mass.
 
     position (b, 3) is x, y, angle; velocity (b, 3); mass (b, 3) is m, m, I. Joints: ends (n, 2); anchors (n, 2, 2) in
-    body coordinates; rest (n, 2), the frame's angle on each body; turn (n,); stiffness and cap (n, 3).
+    body coordinates; rest (n, 2), the frame's angle on each body; turn (n,); arc (n,), extension over rotation squared; stiffness and cap (n, 3).
     """
 
     position: np.ndarray
@@ -20,6 +20,7 @@ class Twin:
     anchors: np.ndarray
     rest: np.ndarray
     turn: np.ndarray
+    arc: np.ndarray
     stiffness: np.ndarray
     cap: np.ndarray
     beta: float = 0.0
@@ -51,6 +52,8 @@ class Twin:
                 jacobian[k, :2, body, :2] = sign * axes
                 jacobian[k, :2, body, 2] = sign * axes @ [-arms[i][1], arms[i][0]] + share[i] * np.array([v, -u])
                 jacobian[k, 2, body, 2] = sign
+            q[k, 0] -= self.arc[k] * q[k, 2] ** 2
+            jacobian[k, 0] -= 2.0 * self.arc[k] * q[k, 2] * jacobian[k, 2]
         return q, jacobian.reshape(3 * n, 3 * bodies)
 
     def step(self, h: float, push: np.ndarray) -> None:

@@ -7,6 +7,10 @@ With d the vector between a joint's two anchors and e, n the axes of a frame tha
     u̇ = e·ḋ + (n·d) ψ̇,  v̇ = n·ḋ - (e·d) ψ̇.
 
 The terms in ψ̇ make the pair of forces exactly free of moment, so angular momentum is kept.
+
+A joint that stands for a length ℓ of a member stands for an arc, and its kink for less way than that: with rotations
+Δ_i = w_i L κ_i at the points x_i of a rule, the chain's Σ (1 - x_i) (sin θ_i - sin θ_{i-1}) falls short of the rule's
+∫ (1 - x) κ cos θ dx by the factor 1 - Δ_i²/24. So u counts from an extension of ℓ θ²/24 on.
 """
 
 import math
@@ -14,7 +18,7 @@ import math
 from numba import njit
 
 from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, COSINE, MASS_INVERSE, MOMENT_INVERSE, SINE, X
-from sim.kernels.layout import ANCHOR_A, ANCHOR_B, AXIS_A, AXIS_B, BETA, REST_A, REST_B, STEP, TURN
+from sim.kernels.layout import ANCHOR_A, ANCHOR_B, ARC, AXIS_A, AXIS_B, BETA, REST_A, REST_B, STEP, TURN
 from sim.memory import floats, integers
 
 
@@ -61,6 +65,10 @@ def prepare(  # type: ignore[no-untyped-def]
         lightness[k, 1] = mass + jacobian[k, 8] * jacobian[k, 8] * turn_a + jacobian[k, 11] * jacobian[k, 11] * turn_b
         lightness[k, 2] = turn_a + turn_b
         deformation[k, 0], deformation[k, 1], deformation[k, 2] = u, v, angle_b - angle_a
+        arc = geometry[k, ARC] * (angle_b - angle_a)
+        deformation[k, 0] -= arc * (angle_b - angle_a)
+        jacobian[k, 2] += 2.0 * arc
+        jacobian[k, 5] -= 2.0 * arc
         if beta != 0.0:
             x, y, z = rates(jacobian, k, velocity, ia, velocity, ib)
             deformation[k, 0] -= beta * h * x

@@ -21,7 +21,7 @@ _FIRST_ADDRESS = 19
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
     JOINT_BODIES,  # (joints, 2) int64
-    GEOMETRY,  # (joints, 11)
+    GEOMETRY,  # (joints, 12)
     LAWS,  # (joints, 5) int64: respond, commit, parameters, state, length of the state
     STIFFNESS,  # (joints, 6): elastic tangent
     DAMPING,  # (joints, 3): force over rate of deformation
@@ -67,9 +67,10 @@ SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 5, 6, 7
 SETTINGS_WORDS = 8
 
 # Geometry of a joint: anchor on a and on b (from their centres of gravity, body coordinates), rest angle of the
-# joint's frame on a and on b, share α of b's rotation in the frame, cosine and sine of the two rest angles.
-ANCHOR_A, ANCHOR_B, REST_A, REST_B, TURN, AXIS_A, AXIS_B = 0, 2, 4, 5, 6, 7, 9
-GEOMETRY_WORDS = 11
+# joint's frame on a and on b, share α of b's rotation in the frame, cosine and sine of the two rest angles, extension
+# over the square of the rotation.
+ANCHOR_A, ANCHOR_B, REST_A, REST_B, TURN, AXIS_A, AXIS_B, ARC = 0, 2, 4, 5, 6, 7, 9, 11
+GEOMETRY_WORDS = 12
 
 # Limits of a joint: plastic elongation, slip and rotation at which it breaks, whether compression counts (1) or not.
 LIMITS_WORDS = 4

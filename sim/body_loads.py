@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import pymunk
 
 from scene import LoadKind, Scene
-from sim.pieces import NodePoint, Piece
+from sim.pieces import NodePoint, Span
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class BodyLoad:
 
 
 def body_loads(
-    scene: Scene, kind: LoadKind, pieces: Mapping[str, Sequence[Piece]], nodes: Mapping[str, NodePoint]
+    scene: Scene, kind: LoadKind, spans: Sequence[Span], nodes: Mapping[str, NodePoint]
 ) -> tuple[BodyLoad, ...]:
     """The scene's loads of one kind, on the bodies that they act on.
 
@@ -37,10 +37,11 @@ def body_loads(
     loads: list[BodyLoad] = []
     for load in scene.loads_of(kind):
         if load.member is not None:
-            for piece in pieces[load.member]:
-                span = piece.end - piece.start
-                force = (load.per_length[0] * span, load.per_length[1] * span)
-                loads.append(BodyLoad(piece.body, force, 0.0, (0.0, 0.0)))
+            for span in spans:
+                if span.member == load.member:
+                    length = span.end - span.start
+                    force = (load.per_length[0] * length, load.per_length[1] * length)
+                    loads.append(BodyLoad(span.body, force, 0.0, span.middle))
         elif load.node is not None:
             at = nodes[load.node]
             fx, fy = load.force

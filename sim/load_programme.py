@@ -19,14 +19,13 @@ class LoadProgramme:
     """
 
     def __init__(self, scene: Scene, assembly: Assembly) -> None:
-        pieces = {name: [piece for piece in assembly.pieces if piece.member == name] for name in scene.members}
         self._dead: Sequence[BodyLoad] = assembly.dead_loads
-        self._sudden = body_loads(scene, "step", pieces, assembly.nodes)
+        self._sudden: Sequence[BodyLoad] = assembly.sudden_loads
         self._histories = []
         for load in scene.loads_of("history"):
             alone = msgspec.structs.replace(scene, loads=(load,))
             times, factors = zip(*load.history, strict=True)
-            self._histories.append((times, factors, body_loads(alone, "history", pieces, assembly.nodes)))
+            self._histories.append((times, factors, body_loads(alone, "history", assembly.spans, assembly.nodes)))
 
     def act(self, time: float, dead_share: float) -> None:
         """Let the loads of ``time`` [s] act in the next step, with a share of the dead ones."""

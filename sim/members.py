@@ -15,7 +15,7 @@ from sim.joint import DuctileJoint, Limits
 from sim.laws import ElasticPlastic
 from sim.member_laws import MemberLaws
 from sim.model import Model
-from sim.pieces import NodePoint, Piece, Pieces
+from sim.pieces import NodePoint, Piece, Pieces, Span
 from sim.rules import Rule, member_rule
 from sim.shapes import keep_neighbours_apart
 from sim.structure import Structure
@@ -46,6 +46,8 @@ class Assembly:
     structure : Structure
         All of them as one, as long as none breaks and nothing else is joined to them.
     pieces : tuple of Piece
+    spans : tuple of Span
+        The pieces, and the bits of members that belong to nodes.
     places : tuple of JointPlace
     nodes : dict[str, NodePoint]
         Where each node is.
@@ -61,6 +63,7 @@ class Assembly:
     joints: tuple[DuctileJoint, ...]
     structure: Structure
     pieces: tuple[Piece, ...]
+    spans: tuple[Span, ...]
     places: tuple[JointPlace, ...]
     nodes: dict[str, NodePoint]
     dead_loads: tuple[BodyLoad, ...]
@@ -121,6 +124,7 @@ def assemble(
     if shapes:
         builder.pieces.add_shapes()
         keep_neighbours_apart(space, builder.pieces.bodies(), builder.pieces.greatest_depth())
+    spans = tuple(span for name in scene.members for span in builder.pieces.spans(name))
     structure = Structure(builder.joints)
     space.add(*builder.joints)
     return Assembly(
@@ -128,11 +132,12 @@ def assemble(
         joints=tuple(builder.joints),
         structure=structure,
         pieces=tuple(piece for pieces in builder.pieces.of.values() for piece in pieces),
+        spans=spans,
         places=tuple(builder.places),
         nodes=nodes,
-        dead_loads=body_loads(scene, "dead", builder.pieces.of, nodes),
-        sudden_loads=body_loads(scene, "step", builder.pieces.of, nodes),
-        pattern=body_loads(scene, "proportional", builder.pieces.of, nodes),
+        dead_loads=body_loads(scene, "dead", spans, nodes),
+        sudden_loads=body_loads(scene, "step", spans, nodes),
+        pattern=body_loads(scene, "proportional", spans, nodes),
     )
 
 

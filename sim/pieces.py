@@ -30,6 +30,17 @@ class Piece:
 
 
 @dataclass(frozen=True)
+class Span:
+    """A piece of a member, or the bit of it that belongs to a node: its body, its length [m], and its middle there."""
+
+    body: pymunk.Body
+    member: str
+    start: float
+    end: float
+    middle: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class NodePoint:
     """A node as a point of the body that it belongs to, in that body's coordinates [m]."""
 
@@ -75,6 +86,24 @@ class Pieces:
     def bodies(self) -> list[pymunk.Body]:
         """All of them."""
         return [*self.at_node.values(), *(piece.body for pieces in self.of.values() for piece in pieces)]
+
+    def spans(self, member: str) -> list[Span]:
+        """The pieces of a member, and the bits of it that belong to its nodes."""
+        first, last = self.scene.members[member].start, self.scene.members[member].end
+        pieces, length = self.of[member], self.scene.axis(member)[2]
+        spans = [self._span(piece.body, member, piece.start, piece.end) for piece in pieces]
+        if first in self.at_node:
+            spans.append(self._span(self.at_node[first], member, 0.0, pieces[0].start))
+        if last in self.at_node:
+            spans.append(self._span(self.at_node[last], member, pieces[-1].end, length))
+        return spans
+
+    def _span(self, body: pymunk.Body, member: str, start: float, end: float) -> Span:
+        x, y = self.scene.nodes[self.scene.members[member].start].at
+        c, s, _ = self.scene.axis(member)
+        along = 0.5 * (start + end)
+        mx, my = body.world_to_local((x + c * along, y + s * along))
+        return Span(body, member, start, end, (mx, my))
 
     def node_points(self) -> dict[str, NodePoint]:
         """The nodes as points of the bodies that they belong to."""
@@ -151,14 +180,9 @@ class Pieces:
 
     def add_shapes(self) -> None:
         """A box for each piece, and one for each member's bit of a node, as deep as the section."""
-        for pieces in self.of.values():
-            for piece in pieces:
-                self._add_box(piece.body, piece.member, piece.start, piece.end)
-        for node, body in self.at_node.items():
-            for member in self.meeting[node]:
-                bit, _, _, side = self._first_bit(member, node)
-                length = self.scene.axis(member)[2]
-                self._add_box(body, member, *((0.0, bit) if side > 0.0 else (length - bit, length)))
+        for member in self.scene.members:
+            for span in self.spans(member):
+                self._add_box(span.body, member, span.start, span.end)
 
     def _add_box(self, body: pymunk.Body, member: str, start: float, end: float) -> None:
         x, y = self.scene.nodes[self.scene.members[member].start].at

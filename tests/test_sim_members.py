@@ -89,7 +89,7 @@ def test_parts_far_from_each_other_collide() -> None:
 
 def test_a_frame_in_a_space_of_ones_own() -> None:
     space = pymunk.Space()
-    space.gravity, space.iterations = (0.0, -1.0), 7
+    space.gravity, space.iterations, space.collision_slop = (0.0, -1.0), 7, 1e-3
     assembly = two_columns(space)
     assert assembly.space is space
     assert (space.gravity, space.iterations) == ((0.0, -1.0), 7)

@@ -10,7 +10,8 @@ class Twin:
     """Bodies and joints as arrays; fixed bodies have infinite mass.
 
     position (b, 3) is x, y, angle; velocity (b, 3); mass (b, 3) is m, m, I. Joints: ends (n, 2); anchors (n, 2, 2) in
-    body coordinates; rest (n, 2), the frame's angle on each body; turn (n,); arc (n,), extension over rotation squared; stiffness and cap (n, 3).
+    body coordinates; rest (n, 2), the frame's angle on each body; turn (n,); arc (n,), extension over
+    rotation squared; stiffness and cap (n, 3).
     """
 
     position: np.ndarray

@@ -2,7 +2,7 @@
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import solve_banded
+from scipy.linalg.lapack import dgbsv
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 
@@ -34,19 +34,26 @@ class BandedSolver:
         self._kept = np.flatnonzero((row >= 0) & (column >= 0))
         row, column = row[self._kept], column[self._kept]
         self._reach = int(np.abs(row - column).max())
-        self._shape = (2 * self._reach + 1, self.free.size)
-        self._slot = (self._reach + row - column) * self.free.size + column
+        # Columns of the band lie one after the other, each with room on top for what pivoting fills in.
+        self._shape = (self.free.size, 3 * self._reach + 1)
+        self._slot = column * self._shape[1] + 2 * self._reach + row - column
 
     def solve(self, matrices: np.ndarray, diagonal: np.ndarray, *right: np.ndarray) -> np.ndarray:
         """Solve K x = b for each of ``right``; returns (free, b).
 
         K is assembled from element ``matrices`` (n, k, k), with ``diagonal`` (size,) added.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            When K is singular.
         """
         entries = matrices.ravel()[self._kept]
         band = np.bincount(self._slot, weights=entries, minlength=self._shape[0] * self._shape[1])
         band = band.reshape(self._shape)
-        band[self._reach] += diagonal[self.free]
-        columns = np.column_stack(right)
-        reach = (self._reach, self._reach)
-        answer: np.ndarray = solve_banded(reach, band, columns, overwrite_ab=True, overwrite_b=True, check_finite=False)
-        return answer
+        band[:, 2 * self._reach] += diagonal[self.free]
+        columns = np.array(right).T
+        *_, answer, fault = dgbsv(self._reach, self._reach, band.T, columns, overwrite_ab=True, overwrite_b=True)
+        if fault:
+            raise np.linalg.LinAlgError("the matrix is singular")
+        return np.asarray(answer)

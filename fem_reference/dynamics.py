@@ -283,7 +283,7 @@ class _Stepper:
     def _balance(self, new: np.ndarray, h: float) -> tuple[Response, np.ndarray, np.ndarray]:
         """Response at the displacements ``new`` a time ``h`` ahead, accelerations, and the forces out of balance."""
         state = self.state
-        response = self.frame.respond(new, state.response.plastic_strain)
+        response = self.frame.respond(new, state.response.slip)
         ahead = (new - state.displacement - h * self.velocity) / (self.beta * h * h)
         ahead -= (0.5 / self.beta - 1.0) * self.acceleration
         ahead[self.frame.fixed] = 0.0

@@ -29,8 +29,10 @@ class Response:
         Element tangents.
     strain, stress : (n, 2, 3) float
         (ε₀, κ, γ) and (N, M, Q) at the quadrature points.
-    plastic_strain : (n, 2, f) float
-        Plastic strains, if this displacement is accepted.
+    stored : (n, 2) float
+        Energy that unloading would give back there [J/m].
+    slip : (n, 2, f, l) float
+        Slips of the fibres' layers, if this displacement is accepted.
     """
 
     internal: np.ndarray
@@ -38,7 +40,8 @@ class Response:
     matrices: np.ndarray
     strain: np.ndarray
     stress: np.ndarray
-    plastic_strain: np.ndarray
+    stored: np.ndarray
+    slip: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -57,8 +60,6 @@ class Frame:
     chords : Chords
     kinematics : str
     sections : FibreSections
-    shear_stiffness : (n,) float
-        GA_s [N].
     springs : (size,) float
         Stiffness of the springs to the ground.
     fixed : (k,) int
@@ -85,7 +86,6 @@ class Frame:
     chords: Chords
     kinematics: Kinematics
     sections: FibreSections
-    shear_stiffness: np.ndarray
     springs: np.ndarray
     fixed: np.ndarray
     settlement: np.ndarray
@@ -97,54 +97,40 @@ class Frame:
     pattern: np.ndarray
     meshes: dict[str, MemberMesh]
 
-    def respond(self, displacement: np.ndarray, plastic_strain: np.ndarray) -> Response:
-        """Forces, stiffness and plastic strains at ``displacement`` (size,), from ``plastic_strain`` (n, 2, f)."""
+    def respond(self, displacement: np.ndarray, slip: np.ndarray) -> Response:
+        """Forces, stiffness and slips at ``displacement`` (size,), from ``slip`` (n, 2, f, l)."""
         d = displacement[self.dofs]
-        b = self.strain_matrix
         large = self.kinematics == "large"
         if large:
             q, t, r, z, length = self.chords.natural(d)
-        strain = np.einsum("eqsi,ei->eqs", b, q if large else d)
-        resultants, tangent, plastic = self.sections.respond(strain[..., 0], strain[..., 1], plastic_strain)
-        stress = np.concatenate([resultants, self.shear_stiffness[:, None, None] * strain[..., 2:]], axis=-1)
-        stiffness = np.zeros((*strain.shape, 3))
-        stiffness[..., :2, :2] = tangent
-        stiffness[..., 2, 2] = self.shear_stiffness[:, None]
-        force = np.einsum("eqsi,eqs,eq->ei", b, stress, self.weights)
-        weighted = np.matmul(stiffness * self.weights[..., None, None], b)
-        matrices = np.matmul(np.swapaxes(b, -1, -2), weighted).sum(axis=1)
+        strain, stress, stored, force, matrices, axial_slope, slip = self.sections.respond(
+            q if large else d, self.strain_matrix, self.weights, slip
+        )
         if large:
             matrices = np.swapaxes(t, 1, 2) @ matrices @ t + corotational_tangent(force, r, z, length)
             force = np.einsum("eni,en->ei", t, force)
         elif self.kinematics == "p-delta":
             whole = self.chords.length
             axial = np.sum(self.weights * stress[..., 0], axis=1) / whole
-            extra, turning = p_delta_terms(self.chords, d, axial, weighted[:, :, 0].sum(axis=1) / whole[:, None])
+            extra, turning = p_delta_terms(self.chords, d, axial, axial_slope / whole[:, None])
             force, matrices = force + extra, matrices + turning
         internal = np.bincount(self.dofs.ravel(), weights=force.ravel(), minlength=self.size)
         internal += self.springs * displacement
-        return Response(internal, force, matrices, strain, stress, plastic)
+        return Response(internal, force, matrices, strain, stress, stored, slip)
 
     def dofs_of(self, axis: int) -> np.ndarray:
         """Degrees of freedom that displace along global x (0) or y (1)."""
         return np.unique(self.dofs[:, [axis, axis + 3]])
 
     def undeformed(self) -> np.ndarray:
-        """Plastic strains of a virgin frame, (n, 2, fibres)."""
-        return np.zeros((*self.weights.shape, self.sections.y.shape[-1]))
+        """Slips of a virgin frame, (n, 2, fibres, layers)."""
+        return self.sections.virgin(self.weights.shape[1])
 
     def elastic_energy(self, response: Response) -> float:
-        """Energy that unloading would give back, without the springs' [J]: ∫ σ² / 2E dV + ∫ γ² GA_s / 2 dx."""
-        s = self.sections
-        strain = response.strain[..., :1] - s.y * response.strain[..., 1:2] - response.plastic_strain
-        fibres = 0.5 * np.sum(s.youngs_modulus * s.area * strain**2, axis=-1)
-        shear = 0.5 * self.shear_stiffness[:, None] * response.strain[..., 2] ** 2
-        return float(np.sum(self.weights * (fibres + shear)))
+        """Energy that unloading would give back, without the springs' [J]."""
+        return float(np.sum(self.weights * response.stored))
 
     def plastic_work(self, before: Response, after: Response) -> float:
-        """Work of the fibre stresses on the plastic strains of a step, by the trapezoidal rule [J]."""
-        s = self.sections
-        flow = after.plastic_strain - before.plastic_strain
-        mean = 0.5 * (before.strain + after.strain)
-        elastic = mean[..., :1] - s.y * mean[..., 1:2] - 0.5 * (before.plastic_strain + after.plastic_strain)
-        return float(np.sum(self.weights * np.sum(s.youngs_modulus * s.area * elastic * flow, axis=-1)))
+        """What the stresses have worked in a step, by the trapezoidal rule, and is not stored [J]."""
+        strained = np.sum((before.stress + after.stress) * (after.strain - before.strain), axis=-1)
+        return float(np.sum(self.weights * (0.5 * strained - after.stored + before.stored)))

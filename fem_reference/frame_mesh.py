@@ -19,12 +19,6 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
     ends = {name: np.arange(3) + 3 * i for i, name in enumerate(scene.nodes)}
     meshes = {name: mesh_member(scene.axis(name)[2], elements) for name in scene.members}
     dofs, size = _number(scene, elements, ends)
-    sections = [m.section.fibres(fibres) for m in scene.members.values()]
-    materials = [m.material for m in scene.members.values()]
-
-    def each(values: list[float]) -> np.ndarray:
-        return np.repeat(np.array(values), elements)[:, None, None]
-
     strain_matrix = [
         mesh.strain_matrix[..., NATURAL]
         if scene.kinematics == "large"
@@ -47,14 +41,7 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
         dofs=np.concatenate(list(dofs.values())),
         chords=Chords(np.concatenate(spans)),
         kinematics=scene.kinematics,
-        sections=FibreSections(
-            y=np.repeat([s.y for s in sections], elements, axis=0)[:, None, :],
-            area=np.repeat([s.area for s in sections], elements, axis=0)[:, None, :],
-            youngs_modulus=each([m.youngs_modulus for m in materials]),
-            yield_stress=each([m.yield_stress for m in materials]),
-            tangent_modulus=each([m.tangent_modulus for m in materials]),
-        ),
-        shear_stiffness=each([scene.capacity(name).GA_s for name in scene.members]).ravel(),
+        sections=_sections(scene, elements, fibres),
         springs=springs,
         fixed=fixed,
         settlement=settlement,
@@ -65,6 +52,24 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
         element_pattern=element_pattern,
         pattern=pattern,
         meshes=meshes,
+    )
+
+
+def _sections(scene: Scene, elements: int, fibres: int) -> FibreSections:
+    """Fibres of every member; curves with fewer breaks than others get some at which nothing changes."""
+    members = scene.members.values()
+    cut = [m.section.fibres(fibres) for m in members]
+    laws = [m.material.stress_strain for m in members]
+    layers = max(len(law.breaks) for law in laws)
+    return FibreSections(
+        kind=np.repeat(np.arange(len(cut)), elements),
+        y=np.array([s.y for s in cut]),
+        area=np.array([s.area for s in cut]),
+        youngs_modulus=np.array([law.slopes[0] for law in laws]),
+        last_slope=np.array([law.slopes[-1] for law in laws]),
+        breaks=np.array([np.pad(law.breaks, (0, layers - len(law.breaks)), constant_values=np.inf) for law in laws]),
+        drops=np.array([np.pad(law.drops, (0, layers - len(law.drops))) for law in laws]),
+        shear_stiffness=np.repeat([scene.capacity(name).GA_s for name in scene.members], elements),
     )
 
 

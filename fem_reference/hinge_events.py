@@ -74,11 +74,9 @@ def utilisation(frame: Frame, scene: Scene, trace: Trace) -> np.ndarray:
     start = 0
     for name, mesh in frame.meshes.items():
         count = len(mesh.weights)
-        sections = frame.sections
+        sections, kind = frame.sections, frame.sections.kind[start]
         N, M = stress[:, start : start + count, :, 0], stress[:, start : start + count, :, 1]
-        full = plastic_moment(
-            sections.y[start, 0], sections.area[start, 0], scene.members[name].material.yield_stress, N, M
-        )
+        full = plastic_moment(sections.y[kind], sections.area[kind], scene.members[name].material.yield_stress, N, M)
         shares.append(np.abs(M) / np.maximum(full, 1e-12 * full.max()))
         start += count
     return np.concatenate(shares, axis=1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.frame import Frame
+from fem_reference.frame import Frame, Response
 from fem_reference.paths import Trace
 from scene import Scene
 
@@ -44,9 +44,10 @@ class MemberResult:
 
 
 def member_results(
-    scene: Scene, frame: Frame, path: Trace, displacement: np.ndarray, strain: np.ndarray, plastic_strain: np.ndarray
+    scene: Scene, frame: Frame, path: Trace, displacement: np.ndarray, response: Response
 ) -> dict[str, MemberResult]:
-    """Results by member, from a path and the displacements (size,), strains and plastic strains at its end."""
+    """Results by member, from a path and the displacements (size,) and response at its end."""
+    plastic_strain = np.abs(frame.sections.plastic_strain(response.strain, response.slip)).max(axis=-1)
     spread = frame.element_weight + np.array(path.load)[:, None, None] * frame.element_pattern
     contact = np.array(path.element_forces) - spread
     results = {}
@@ -65,8 +66,8 @@ def member_results(
             station=mesh.stations.ravel()[order],
             axial_force=path.stress[-1][part, :, 0].ravel()[order],
             moment=path.stress[-1][part, :, 1].ravel()[order],
-            curvature=strain[part, :, 1].ravel()[order],
-            plastic_strain=np.abs(plastic_strain[part]).max(axis=-1).ravel()[order],
+            curvature=response.strain[part, :, 1].ravel()[order],
+            plastic_strain=plastic_strain[part].ravel()[order],
             point=mesh.points,
             shape=displacement[nodes],
         )

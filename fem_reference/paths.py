@@ -255,7 +255,7 @@ class State:
 
     def _balance(self, d: np.ndarray, load: float) -> tuple[Response, np.ndarray, np.ndarray]:
         """The frame's response, the loads on it, and the forces on free degrees of freedom that are out of balance."""
-        response = self.frame.respond(d, self.response.plastic_strain)
+        response = self.frame.respond(d, self.response.slip)
         applied = self._dead * self.frame.weight + load * self.frame.pattern
         return response, applied, (applied - response.internal)[self.solver.free]
 

@@ -154,9 +154,7 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
         seconds=time.perf_counter() - started,
         hinges=_with_errors(fine.hinges, coarse.hinges, float(np.abs(path.load).max())),
         outcome=path.stopped or _outcome(scene, path),
-        members=member_results(
-            scene, fine.frame, path, fine.end.displacement, fine.end.response.strain, fine.end.response.plastic_strain
-        ),
+        members=member_results(scene, fine.frame, path, fine.end.displacement, fine.end.response),
         residual=path.displacement[-1],
         residual_error=abs(path.displacement[-1] - coarse.trace.displacement[-1]),
         energy=Energy(external, elastic, plastic, _energy_error(path, coarse.trace)),

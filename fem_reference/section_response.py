@@ -1,16 +1,23 @@
-"""Stress resultants of fibre sections: every quadrature point of a frame at once.
+"""Stress resultants of fibre sections and what they do to an element, at every quadrature point of a frame at once.
 
-A fibre at height y has strain ε = ε₀ - y κ and follows bilinear kinematic hardening (Simo & Hughes, *Computational
-Inelasticity*, box 1.5): with plastic modulus H = E E_t / (E - E_t) and relative trial stress ξ = E (ε - εp) - H εp,
+A fibre at height y has strain ε = ε₀ - y κ and the law of its material: elastic–perfectly plastic layers in parallel
+(J. F. Besseling, A theory of elastic, plastic, and creep deformations, J. Appl. Mech. 25, 1958). Layer j takes the
+share E_(j-1) - E_j of the stiffness, yields at the strain ε_j, and has slipped by s_j:
 
-    Δεp = max(|ξ| - fy, 0) sign ξ / (E + H),   σ = E (ε - εp - Δεp),   dσ/dε = E_t where it yields, E where not.
+    σ = E_n ε + Σ_j (E_(j-1) - E_j) clip(ε - s_j, -ε_j, ε_j).
 
-The section gives N = Σ A σ and M = -Σ A y σ.
+On first loading that is the curve through the breaks ε_j with slopes E_j; unloading is the same curve at twice the size
+(Masing), so hardening is kinematic. One layer is bilinear kinematic hardening. The section gives N = Σ A σ and
+M = -Σ A y σ.
+
+The fibres of all elements are one loop of compiled code: there are some thousand of them in a frame, visited in every
+Newton step.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 #: Least tangent modulus over E in the Newton matrix. A section that yields throughout has no stiffness left, not even
 #: axially, and a member beyond it could slide off; the floor keeps the matrix regular and leaves the forces alone.
@@ -19,53 +26,146 @@ TANGENT_FLOOR = 1e-7
 
 @dataclass(frozen=True)
 class FibreSections:
-    """Fibres of n elements; arrays broadcast to (element, quadrature point, fibre).
+    """Fibre sections of n elements, of m kinds with f fibres of l layers each.
 
     Attributes
     ----------
-    y, area : (n, 1, f) float
+    kind : (n,) int
+        Which of the m sections an element has.
+    y, area : (m, f) float
         Fibre heights [m] and areas [m²].
-    youngs_modulus, yield_stress, tangent_modulus : (n, 1, 1) float
-        E, fy, E_t [Pa].
+    youngs_modulus : (m,) float
+        E [Pa].
+    last_slope : (m,) float
+        Slope of the stress–strain curve beyond its last break [Pa].
+    breaks, drops : (m, l) float
+        Strains ε_j at which the slope changes [-], and by how much it falls there [Pa].
+    shear_stiffness : (n,) float
+        GA_s [N].
     """
 
+    kind: np.ndarray
     y: np.ndarray
     area: np.ndarray
     youngs_modulus: np.ndarray
-    yield_stress: np.ndarray
-    tangent_modulus: np.ndarray
+    last_slope: np.ndarray
+    breaks: np.ndarray
+    drops: np.ndarray
+    shear_stiffness: np.ndarray
+
+    def virgin(self, points: int) -> np.ndarray:
+        """Slips of sections that were never loaded, (n, points, f, l)."""
+        return np.zeros((len(self.kind), points, self.y.shape[1], self.breaks.shape[1]))
 
     def respond(
-        self, axial_strain: np.ndarray, curvature: np.ndarray, plastic_strain: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Resultants, tangent and new plastic strain.
+        self, deformation: np.ndarray, strain_matrix: np.ndarray, weights: np.ndarray, slip: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Elements of q quadrature points and k degrees of freedom.
 
         Parameters
         ----------
-        axial_strain, curvature : (n, q) float
-            ε₀ [-] and κ [1/m].
-        plastic_strain : (n, q, f) float
-            Converged plastic strains before this step.
+        deformation : (n, k) float
+            Degrees of freedom of each element.
+        strain_matrix : (n, q, 3, k) float
+            (ε₀ [-], κ [1/m], γ [-]) from them.
+        weights : (n, q) float
+            Quadrature weights [m].
+        slip : (n, q, f, l) float
+            Slips before this step [-].
 
         Returns
         -------
-        resultants : (n, q, 2) float
-            N [N], M [N m].
-        tangent : (n, q, 2, 2) float
-            ∂(N, M)/∂(ε₀, κ), with E_t no less than `TANGENT_FLOOR` E.
-        plastic_strain : (n, q, f) float
-            Plastic strains if this step is accepted.
+        strain, stress : (n, q, 3) float
+            (ε₀, κ, γ) and (N, M, Q).
+        stored : (n, q) float
+            Energy that unloading would give back, ∫ σ² / 2E dA + GA_s γ² / 2 [J/m].
+        force : (n, k) float
+            Σ w Bᵀ (N, M, Q).
+        matrix : (n, k, k) float
+            Its derivative, with the tangent of a fibre no less than `TANGENT_FLOOR` E.
+        axial_slope : (n, k) float
+            Derivative of Σ w N.
+        slip : (n, q, f, l) float
+            Slips if this step is accepted.
         """
-        e, et = self.youngs_modulus, self.tangent_modulus
-        hardening = e * et / (e - et)
-        strain = axial_strain[..., None] - self.y * curvature[..., None]
-        trial = e * (strain - plastic_strain)
-        relative = trial - hardening * plastic_strain
-        excess = np.abs(relative) - self.yield_stress
-        flow = np.where(excess > 0.0, np.copysign(excess, relative), 0.0) / (e + hardening)
-        force = self.area * (trial - e * flow)
-        stiffness = self.area * np.where(excess > 0.0, np.maximum(et, TANGENT_FLOOR * e), e)
-        resultants = np.stack([force.sum(-1), -(force * self.y).sum(-1)], axis=-1)
-        ea, es, ei = stiffness.sum(-1), -(stiffness * self.y).sum(-1), (stiffness * self.y**2).sum(-1)
-        tangent = np.stack([np.stack([ea, es], axis=-1), np.stack([es, ei], axis=-1)], axis=-2)
-        return resultants, tangent, plastic_strain + flow
+        n, q, _, k = strain_matrix.shape
+        strain, stress, stored = np.empty((n, q, 3)), np.empty((n, q, 3)), np.empty((n, q))
+        force, matrix, axial_slope = np.zeros((n, k)), np.zeros((n, k, k)), np.zeros((n, k))
+        after = np.empty_like(slip)
+        _elements(
+            deformation, strain_matrix, weights, self.kind, self.y, self.area, self.youngs_modulus, self.last_slope,
+            self.breaks, self.drops, self.shear_stiffness, slip,
+            strain, stress, stored, force, matrix, axial_slope, after,
+        )  # fmt: skip
+        return strain, stress, stored, force, matrix, axial_slope, after
+
+    def plastic_strain(self, strain: np.ndarray, slip: np.ndarray) -> np.ndarray:
+        """ε - σ / E of every fibre, (n, q, f), at strains (n, q, 3) with the slips (n, q, f, l) that belong to them."""
+        kind = self.kind
+        fibre = strain[..., :1] - self.y[kind][:, None] * strain[..., 1:2]
+        layers = np.sum((fibre[..., None] - slip) * self.drops[kind][:, None, None], axis=-1)
+        e = self.youngs_modulus[kind][:, None, None]
+        stress = self.last_slope[kind][:, None, None] * fibre + layers
+        return np.asarray(fibre - stress / e)
+
+
+@njit(cache=True, error_model="numpy")
+def _elements(  # type: ignore[no-untyped-def]
+    deformation, strain_matrix, weights, kind, y, area, youngs_modulus, last_slope,
+    breaks, drops, shear_stiffness, slip,
+    strain, stress, stored, force, matrix, axial_slope, after,
+):  # fmt: skip
+    n, points, _, size = strain_matrix.shape
+    fibres, layers = slip.shape[2], slip.shape[3]
+    weighted = np.empty((3, size))
+    for e in range(n):
+        m = kind[e]
+        modulus, last, shear = youngs_modulus[m], last_slope[m], shear_stiffness[e]
+        floor = TANGENT_FLOOR * modulus
+        for p in range(points):
+            b, w = strain_matrix[e, p], weights[e, p]
+            for row in range(3):
+                total = 0.0
+                for i in range(size):
+                    total += b[row, i] * deformation[e, i]
+                strain[e, p, row] = total
+            axial, curvature, sliding = strain[e, p, 0], strain[e, p, 1], strain[e, p, 2]
+            N = M = ea = es = ei = energy = 0.0
+            for f in range(fibres):
+                height = y[m, f]
+                here = axial - height * curvature
+                sigma, slope = last * here, last
+                for j in range(layers):
+                    elastic, most, share = here - slip[e, p, f, j], breaks[m, j], drops[m, j]
+                    if elastic > most:
+                        sigma += share * most
+                        after[e, p, f, j] = here - most
+                    elif elastic < -most:
+                        sigma -= share * most
+                        after[e, p, f, j] = here + most
+                    else:
+                        sigma += share * elastic
+                        slope += share
+                        after[e, p, f, j] = slip[e, p, f, j]
+                pull, stiffness = area[m, f] * sigma, area[m, f] * max(slope, floor)
+                N += pull
+                M -= pull * height
+                energy += pull * sigma
+                ea += stiffness
+                es -= stiffness * height
+                ei += stiffness * height * height
+            Q = shear * sliding
+            stress[e, p, 0], stress[e, p, 1], stress[e, p, 2] = N, M, Q
+            stored[e, p] = 0.5 * (energy / modulus + Q * sliding)
+            for i in range(size):
+                weighted[0, i] = w * (ea * b[0, i] + es * b[1, i])
+                weighted[1, i] = w * (es * b[0, i] + ei * b[1, i])
+                weighted[2, i] = w * shear * b[2, i]
+                axial_slope[e, i] += weighted[0, i]
+                force[e, i] += w * (N * b[0, i] + M * b[1, i] + Q * b[2, i])
+            for i in range(size):
+                for j in range(i + 1):
+                    matrix[e, i, j] += b[0, i] * weighted[0, j] + b[1, i] * weighted[1, j] + b[2, i] * weighted[2, j]
+        for i in range(size):
+            for j in range(i):
+                matrix[e, j, i] = matrix[e, i, j]

@@ -19,7 +19,7 @@ MAY_IMPORT = {
 WORKS_WITHOUT = {
     "capacity": ("pymunk", "skfem", "numba"),
     "scene": ("pymunk", "skfem", "numba"),
-    "fem_reference": ("pymunk", "numba"),
+    "fem_reference": ("pymunk",),
     "sim": ("skfem",),
 }
 

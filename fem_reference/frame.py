@@ -33,6 +33,8 @@ class Response:
         Energy that unloading would give back there [J/m].
     slip : (n, 2, f, l) float
         Slips of the fibres' layers, if this displacement is accepted.
+    springs : (size,) float
+        Stiffness of the springs and bearings that act there.
     """
 
     internal: np.ndarray
@@ -42,6 +44,7 @@ class Response:
     stress: np.ndarray
     stored: np.ndarray
     slip: np.ndarray
+    springs: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -60,8 +63,8 @@ class Frame:
     chords : Chords
     kinematics : str
     sections : FibreSections
-    springs : (size,) float
-        Stiffness of the springs to the ground.
+    springs, bearings : (size,) float
+        Stiffness of the springs to the ground, and of those that only push, against negative displacements.
     fixed : (k,) int
         Degrees of freedom that are prescribed, …
     settlement : (k,) float
@@ -87,6 +90,7 @@ class Frame:
     kinematics: Kinematics
     sections: FibreSections
     springs: np.ndarray
+    bearings: np.ndarray
     fixed: np.ndarray
     settlement: np.ndarray
     size: int
@@ -115,8 +119,16 @@ class Frame:
             extra, turning = p_delta_terms(self.chords, d, axial, axial_slope / whole[:, None])
             force, matrices = force + extra, matrices + turning
         internal = np.bincount(self.dofs.ravel(), weights=force.ravel(), minlength=self.size)
-        internal += self.springs * displacement
-        return Response(internal, force, matrices, strain, stress, stored, slip)
+        springs = self._acting(displacement)
+        internal += springs * displacement
+        return Response(internal, force, matrices, strain, stress, stored, slip, springs)
+
+    def _acting(self, displacement: np.ndarray) -> np.ndarray:
+        return np.asarray(self.springs + np.where(displacement <= 0.0, self.bearings, 0.0))
+
+    def spring_energy(self, displacement: np.ndarray) -> float:
+        """Energy in springs and bearings [J]."""
+        return 0.5 * float(self._acting(displacement) @ displacement**2)
 
     def dofs_of(self, axis: int) -> np.ndarray:
         """Degrees of freedom that displace along global x (0) or y (1)."""

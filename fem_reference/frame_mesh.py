@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from capacity.fibres import Fibres
+from capacity.stress_strain import StressStrain
 from fem_reference.frame import NATURAL, Frame
 from fem_reference.kinematics import Chords
 from fem_reference.member_mesh import SHEAR, MemberMesh, mesh_member, turned
 from fem_reference.section_response import FibreSections
 from scene import Load, Scene
+
+#: Depths from the axis to the fibres that stand for an ideal hinge.
+_FAR = 1e4
 
 
 def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
@@ -32,9 +37,10 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
     pattern, element_pattern = _loads(scene, proportional, meshes, dofs, ends, size, own_weight=False)
     if scene.pushed is not None and not proportional:
         pattern = control_vector(scene, ends, size)
-    springs = np.zeros(size)
+    springs, bearings = np.zeros(size), np.zeros(size)
     for name, node in scene.nodes.items():
         springs[ends[name]] += node.spring or (0.0, 0.0, 0.0)
+        bearings[ends[name][1]] = node.bearing
     return Frame(
         strain_matrix=np.concatenate(strain_matrix),
         weights=np.concatenate([mesh.weights for mesh in meshes.values()]),
@@ -43,6 +49,7 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
         kinematics=scene.kinematics,
         sections=_sections(scene, elements, fibres),
         springs=springs,
+        bearings=bearings,
         fixed=fixed,
         settlement=settlement,
         size=size,
@@ -57,9 +64,11 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
 
 def _sections(scene: Scene, elements: int, fibres: int) -> FibreSections:
     """Fibres of every member; curves with fewer breaks than others get some at which nothing changes."""
-    members = scene.members.values()
-    cut = [m.section.fibres(fibres) for m in members]
-    laws = [m.material.stress_strain for m in members]
+    if scene.yielding == "ideal-hinges":
+        pairs = [_ideal_hinge(scene, name) for name in scene.members]
+    else:
+        pairs = [(m.section.fibres(fibres), m.material.stress_strain) for m in scene.members.values()]
+    cut, laws = [fibre for fibre, _ in pairs], [law for _, law in pairs]
     layers = max(len(law.breaks) for law in laws)
     return FibreSections(
         kind=np.repeat(np.arange(len(cut)), elements),
@@ -71,6 +80,20 @@ def _sections(scene: Scene, elements: int, fibres: int) -> FibreSections:
         drops=np.array([np.pad(law.drops, (0, layers - len(law.drops))) for law in laws]),
         shear_stiffness=np.repeat([scene.capacity(name).GA_s for name in scene.members], elements),
     )
+
+
+def _ideal_hinge(scene: Scene, name: str) -> tuple[Fibres, StressStrain]:
+    """Fibres that bend elastically up to M_p and then turn, whatever the axial force.
+
+    Two of area I / 2r² at ± r, far outside the section, make up EI and yield together at the strain r M_p / EI, beside
+    which that of the axial force is nothing. The rest of the area lies on the axis and never comes to that strain.
+    """
+    material, c = scene.members[name].material, scene.capacity(name)
+    e = material.youngs_modulus
+    r = _FAR * scene.members[name].section.depth
+    outer = c.EI / (2.0 * e * r**2)
+    fibres = Fibres(np.array([-r, 0.0, r]), np.array([outer, c.EA / e - 2.0 * outer, outer]))
+    return fibres, StressStrain.bilinear(e, e * r * c.M_max / c.EI, material.tangent_modulus)
 
 
 def control_vector(scene: Scene, node_dofs: dict[str, np.ndarray], size: int) -> np.ndarray:

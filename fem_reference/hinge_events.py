@@ -9,6 +9,7 @@ Without hardening a fibre section comes to it in the limit only. Near it 1 - M /
 rotation, ∫ κ dx over the plastic zone, lacks a share in proportion to (1 - M / M_pl,N)^(1/2) of what it will be when
 the hinge is there. So that root falls to zero in proportion to the load that is still missing, and the hinge's load is
 where the line through the root at `NEAR` and at `FULL` meets zero. With hardening, M passes M_pl,N: that is the load.
+An ideal hinge's moment rises in a straight line until it is there: the line through the two points before tells where.
 
 A hinge that grows along its member is one hinge, and so is one at a node where just two member ends meet.
 """
@@ -25,6 +26,8 @@ from scene import Scene
 
 #: Shares of M_pl,N from which the load at which it is reached is found; the second makes a section a hinge.
 NEAR, FULL = 0.995, 0.9992
+#: Share of M_p at which an ideal hinge has formed.
+_THERE = 1.0 - 1e-6
 #: Share of a path's last rise at which it is as good as level.
 _LEVEL = 0.999
 
@@ -67,16 +70,17 @@ def plastic_moment(y: np.ndarray, area: np.ndarray, yield_stress: float, N: np.n
     )
 
 
-def utilisation(frame: Frame, scene: Scene, trace: Trace) -> np.ndarray:
+def utilisation(frame: Frame, trace: Trace) -> np.ndarray:
     """|M| / M_pl,N at every point of the path and quadrature point, (k, n, 2)."""
     stress = np.array(trace.stress)
     shares = []
     start = 0
-    for name, mesh in frame.meshes.items():
+    for mesh in frame.meshes.values():
         count = len(mesh.weights)
         sections, kind = frame.sections, frame.sections.kind[start]
         N, M = stress[:, start : start + count, :, 0], stress[:, start : start + count, :, 1]
-        full = plastic_moment(sections.y[kind], sections.area[kind], scene.members[name].material.yield_stress, N, M)
+        fy = float(sections.youngs_modulus[kind] * sections.breaks[kind, 0])
+        full = plastic_moment(sections.y[kind], sections.area[kind], fy, N, M)
         shares.append(np.abs(M) / np.maximum(full, 1e-12 * full.max()))
         start += count
     return np.concatenate(shares, axis=1)
@@ -84,8 +88,8 @@ def utilisation(frame: Frame, scene: Scene, trace: Trace) -> np.ndarray:
 
 def hinge_events(frame: Frame, scene: Scene, trace: Trace) -> tuple[HingeEvent, ...]:
     """Hinges of a path in the order in which they form."""
-    share = utilisation(frame, scene, trace)
-    found: list[tuple[float, str, int, float]] = []
+    share, load, displacement = utilisation(frame, trace), np.array(trace.load), np.array(trace.displacement)
+    found: list[tuple[float, str, int, float, float, float]] = []
     start = 0
     for name, mesh in frame.meshes.items():
         count = len(mesh.weights)
@@ -93,15 +97,17 @@ def hinge_events(frame: Frame, scene: Scene, trace: Trace) -> tuple[HingeEvent, 
         history = share[:, start : start + count].reshape(len(share), -1)[:, order]
         stations = mesh.stations.ravel()[order]
         start += count
-        found += [
-            (_time_of_hinge(history[:, i], np.array(trace.load)), name, int(i), float(stations[i]))
-            for i in np.flatnonzero((history >= FULL).any(axis=0))
-        ]
+        for i in np.flatnonzero((history >= FULL).any(axis=0)):
+            if scene.yielding == "ideal-hinges":
+                time, at = _ideal_hinge(history[:, i], load, displacement)
+            else:
+                time = _time_of_hinge(history[:, i], load)
+                at = [float(np.interp(time, np.arange(len(load)), values)) for values in (load, displacement)]
+            found.append((time, name, int(i), float(stations[i]), at[0], at[1]))
     events: list[HingeEvent] = []
     zones: dict[str, list[tuple[int, float]]] = {name: [] for name in frame.meshes}
     seen: set[str] = set()
-    index = np.arange(len(trace.load))
-    for time, name, point, station in sorted(found):
+    for _, name, point, station, *at in sorted(found):
         near = 0.5 * scene.members[name].section.depth
         grown = any(abs(point - j) <= 1 or abs(station - x) <= near for j, x in zones[name])
         zones[name].append((point, station))
@@ -110,8 +116,7 @@ def hinge_events(frame: Frame, scene: Scene, trace: Trace) -> tuple[HingeEvent, 
             continue
         if node:
             seen.add(node)
-        load, displacement = (float(np.interp(time, index, values)) for values in (trace.load, trace.displacement))
-        events.append(HingeEvent(name, station, node, load, displacement))
+        events.append(HingeEvent(name, station, node, *at))
     return tuple(events)
 
 
@@ -135,6 +140,17 @@ def _time_of_hinge(share: np.ndarray, load: np.ndarray) -> float:
     stop = int(np.argmax(left)) if left.any() else len(load)
     found = np.where((index >= full) & (index < stop), np.abs(load - there), 0.0)
     return max(full, _first_time(found, min(missing, _LEVEL * found.max())))
+
+
+def _ideal_hinge(share: np.ndarray, load: np.ndarray, displacement: np.ndarray) -> tuple[float, list[float]]:
+    """Where along a path, in points, an ideal hinge with M / M_p = ``share`` forms; its load and displacement."""
+    k = int(np.argmax(share >= _THERE))
+    if k < 2:
+        time = _first_time(share, _THERE)
+        return time, [float(np.interp(time, [0, 1], values[:2])) for values in (load, displacement)]
+    reach = float((1.0 - share[k - 1]) / (share[k - 1] - share[k - 2]))
+    at = [float(values[k - 1] + reach * (values[k - 1] - values[k - 2])) for values in (load, displacement)]
+    return k - 1 + (at[1] - displacement[k - 1]) / (displacement[k] - displacement[k - 1]), at
 
 
 def _node_at(scene: Scene, name: str, station: float) -> str:

@@ -39,6 +39,13 @@ def resolved_legs(stops: Sequence[float], legs: Sequence[np.ndarray], load: np.n
     return resolved
 
 
+def with_events(leg: np.ndarray, events: Sequence[float]) -> np.ndarray:
+    """``leg`` with points at ``events`` [m] and halfway between them, so that each is alone on a straight piece."""
+    at = np.unique(events)
+    found = np.unique(np.concatenate([leg, at, 0.5 * (at[1:] + at[:-1])]))
+    return np.asarray(found[(found > 0.0) & (found <= leg[-1])])
+
+
 def _resolved(distance: np.ndarray, load: np.ndarray) -> np.ndarray:
     """As many distances again, closer where the curve bends, so that straight lines between them follow it.
 

@@ -26,7 +26,7 @@ class MemberResult:
     curvature : (m,) float
         κ there [1/m].
     plastic_strain : (m,) float
-        Largest plastic strain of any fibre there [-].
+        Largest plastic strain of any fibre there [-]; with ideal hinges, plastic curvature times half the depth.
     point : (j,) float
         Element ends, from the start [m].
     shape : (j, 2) float
@@ -48,6 +48,9 @@ def member_results(
 ) -> dict[str, MemberResult]:
     """Results by member, from a path and the displacements (size,) and response at its end."""
     plastic_strain = np.abs(frame.sections.plastic_strain(response.strain, response.slip)).max(axis=-1)
+    if scene.yielding == "ideal-hinges":
+        outermost = np.array([0.5 * m.section.depth for m in scene.members.values()]) / frame.sections.y.max(axis=1)
+        plastic_strain *= outermost[frame.sections.kind, None]
     spread = frame.element_weight + np.array(path.load)[:, None, None] * frame.element_pattern
     contact = np.array(path.element_forces) - spread
     results = {}

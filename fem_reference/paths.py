@@ -150,8 +150,7 @@ class State:
         points.stress.append(self.response.stress)
         points.element_forces.append(self.response.element_forces)
         points.external.append(self.external)
-        springs = 0.5 * float(self.frame.springs @ self.displacement**2)
-        points.elastic.append(self.frame.elastic_energy(self.response) + springs)
+        points.elastic.append(self.frame.elastic_energy(self.response) + self.frame.spring_energy(self.displacement))
         points.plastic.append(self.plastic)
         points.imbalance = self.imbalance
 
@@ -173,11 +172,9 @@ class State:
                 )
         self.slope = None
 
-    def load_to_rest(self) -> None:
-        """Come to rest under the loads that act, from wherever the frame is."""
-        self._work = max(self._work, self.frame.elastic_energy(self.response))
-        if not self._step(self.load, np.zeros(self.frame.size), 1.0):
-            raise NotConverged("the structure does not come to rest under its loads")
+    def release_dead_loads(self) -> None:
+        """Let dead loads act from now on, unbalanced: a structure that falls does not bear them."""
+        self._dead = 1.0
 
     @property
     def applied(self) -> np.ndarray:
@@ -218,14 +215,14 @@ class State:
             # The rest of the frame follows as it would elastically; a support that moved alone would tear its member.
             pull = np.einsum("eij,ej->ei", self.response.matrices, settling[frame.dofs])
             force = np.bincount(frame.dofs.ravel(), weights=pull.ravel(), minlength=frame.size)
-            settling[free] = self.solver.solve(self.response.matrices, frame.springs, -force[free])[:, 0]
+            settling[free] = self.solver.solve(self.response.matrices, self.response.springs, -force[free])[:, 0]
             d += settling
         response, applied, residual = self._balance(d, load)
         for iteration in range(_MOST_ITERATIONS):
             tolerance = TOLERANCE if iteration < _LATE else LATE_TOLERANCE
             gap = goal - float(c @ d) - e * load
             try:
-                answer = self.solver.solve(response.matrices, frame.springs, residual, frame.pattern[free])
+                answer = self.solver.solve(response.matrices, response.springs, residual, frame.pattern[free])
             except np.linalg.LinAlgError:  # an iterate with a singular tangent: a smaller step may pass it by
                 return False
             rise = (gap - float(c[free] @ answer[:, 0])) / (float(c[free] @ answer[:, 1]) + e)

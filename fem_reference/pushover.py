@@ -11,7 +11,7 @@ import numpy as np
 from fem_reference.frame import Frame
 from fem_reference.frame_mesh import build_frame, control_vector
 from fem_reference.hinge_events import HingeEvent, hinge_events
-from fem_reference.legs import even_legs, resolved_legs
+from fem_reference.legs import even_legs, resolved_legs, with_events
 from fem_reference.member_results import MemberResult, member_results
 from fem_reference.paths import State, Trace, trace
 from scene import Scene
@@ -24,6 +24,7 @@ _MOST_REFINEMENTS = 5
 #: A path is level when its last slope is below this share of its first.
 _LEVEL = 1e-4
 _KINEMATICS = {"small": "small displacements", "p-delta": "P–Δ", "large": "corotational large displacements"}
+_YIELDING = {"gradual": "fibre beam elements", "ideal-hinges": "beam elements with ideal hinges"}
 
 
 @dataclass(frozen=True)
@@ -131,6 +132,8 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
     legs = even_legs(stops, POINTS if len(stops) == 1 else POINTS_A_LEG)
     first = _solve(scene, elements, fibres, legs, watch)
     legs = resolved_legs(stops, legs, np.array(first.trace.load))
+    if scene.yielding == "ideal-hinges" and len(legs) == 1:
+        legs = [with_events(legs[0], [hinge.displacement for hinge in first.hinges])]
     coarse = _solve(scene, elements, fibres, legs, watch)
     for _ in range(_MOST_REFINEMENTS):
         elements, fibres = 2 * elements, 2 * fibres
@@ -145,7 +148,8 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
     path = fine.trace
     external, elastic, plastic = (np.array(values) for values in (path.external, path.elastic, path.plastic))
     return Pushover(
-        method=f"displacement-based fibre beam elements ({theories}, cubic Hermite), {_KINEMATICS[scene.kinematics]}",
+        method=f"displacement-based {_YIELDING[scene.yielding]} ({theories}, cubic Hermite), "
+        f"{_KINEMATICS[scene.kinematics]}",
         displacement=np.array(path.displacement),
         load=np.array(path.load),
         error_estimate=error,

@@ -30,6 +30,8 @@ def check(scene: Scene) -> Scene:
         _check_node(scene, name)
         if node.spring is not None and min(node.spring) < 0.0:
             raise InputError(f"nodes.{name}.spring", "a stiffness is negative", "write 0 where there is no spring")
+        if node.bearing < 0.0:
+            raise InputError(f"nodes.{name}.bearing", "it is negative", 'write a stiffness such as "1e8 N/m"')
     if scene.pushed is None and scene.motion is None and scene.simulation is None:
         raise InputError("push", "nothing happens in the scene", "add a table [push], [motion] or [simulation]")
     if scene.pushed is not None and scene.motion is not None:
@@ -47,7 +49,7 @@ def check(scene: Scene) -> Scene:
 
 
 def _is_supported(scene: Scene) -> bool:
-    return any(any(node.held) or node.spring is not None for node in scene.nodes.values())
+    return any(any(node.held) or node.spring is not None or node.bearing for node in scene.nodes.values())
 
 
 def _check_meshed(scene: Scene) -> Scene:
@@ -77,9 +79,9 @@ def _check_members(scene: Scene) -> None:
         if member.section.has_own_materials:
             cure = "use a section of one material; `ductile capacity` takes this one"
             raise InputError(f"members.{name}.section", "members of several materials are not modelled yet", cure)
-        if member.material.curve is not None:
-            cure = 'give the slope beyond yield instead, for example "Et=2 GPa"'
-            raise InputError(f"members.{name}.material", "a table of stresses is not modelled in members yet", cure)
+        if member.material.curve is not None and scene.yielding == "ideal-hinges":
+            cure = 'give a yield stress such as "fy=235 MPa", or take yielding = "gradual"'
+            raise InputError(f"members.{name}.material", "ideal hinges have no table of stresses", cure)
 
 
 def _check_known(scene: Scene, node: str, place: str) -> None:

@@ -18,6 +18,7 @@ from scene.vehicles import Vehicle
 Support = Literal["free", "pinned", "clamped", "roller-x", "roller-y", "guided-x", "guided-y"]
 Theory = Literal["euler-bernoulli", "timoshenko"]
 Kinematics = Literal["small", "p-delta", "large"]
+Yielding = Literal["gradual", "ideal-hinges"]
 MemberEnd = Literal["from", "to"]
 
 #: Which of x, y and rotation each support holds.
@@ -44,6 +45,8 @@ class Node(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         along x and to turn, ``"guided-x"`` slides along x without turning; likewise with y; ``"free"`` holds nothing.
     spring : (Stiffness, Stiffness, RotationalStiffness), optional
         Elastic springs to the ground along x, y and in rotation [N/m, N/m, N m/rad].
+    bearing : Stiffness
+        Of a support under the node that holds it up and lets it go: it only pushes, upwards [N/m].
     settlement : (Length, Length)
         How far the support itself moves, before any push or motion [m].
     mass : Mass
@@ -55,6 +58,7 @@ class Node(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     at: tuple[Length, Length]
     support: Support = "free"
     spring: tuple[Stiffness, Stiffness, RotationalStiffness] | None = None
+    bearing: Stiffness = si(0.0)
     settlement: tuple[Length, Length] = (si(0.0), si(0.0))
     mass: Mass = si(0.0)
     velocity: tuple[Speed, Speed] = (si(0.0), si(0.0))
@@ -130,6 +134,9 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         `fem_reference` holds to be right, ``"auto"``.
     plane : Plane, optional
         What only a plane stress reference needs to know.
+    yielding : str
+        What the reference lets yield: ``"gradual"``, fibres across and along members; or ``"ideal-hinges"``, points
+        that turn at M_p whatever the axial force, as in tables of collapse loads.
     """
 
     title: str
@@ -149,6 +156,7 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     kinematics: Kinematics = "small"
     reference: Literal["auto", "beam", "plane-stress"] = "auto"
     plane: Plane | None = None
+    yielding: Yielding = "gradual"
 
     @property
     def meshed(self) -> Plane | None:

@@ -220,6 +220,9 @@ class _Builder:
             # A support that settles pulls its node along: its spring is as long as the settlement at first.
             joint.geometry[0] += node.settlement[0]
             joint.geometry[1] += node.settlement[1]
+        if node.bearing:
+            cure = "give it a support or a spring, or follow it with `ductile reference`"
+            raise InputError(f"nodes.{name}.bearing", "joints have no support that only pushes", cure)
         if node.spring is not None:
             x, y, rotation = map(float, node.spring)
             self._to_ground(node, body, (x, y, rotation))

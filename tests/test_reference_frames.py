@@ -75,6 +75,20 @@ def test_portal_follows_opensees(name: str, node: str, ratio: float, kinematics:
         assert answer.outcome.startswith("limit point")
 
 
+@pytest.mark.parametrize("row", range(15))
+def test_ideal_hinges_form_as_in_a_table_of_portals(row: int, case: Case) -> None:
+    """Collapse loads by the kinematic theorem, hinge by hinge by elastic analysis; both exact."""
+    expected = case("C2-portal-table")["outputs"]["table"][row]
+    node = "B" if expected["mechanism"] == "sway" else "C"
+    scene = portal(expected["h"], expected["L"], expected["H_over_V"], node, 0.25)
+    answer = pushover(type(scene)(**{**_fields(scene), "yielding": "ideal-hinges"}))
+    assert answer.load.max() == pytest.approx(expected["V_collapse_N"], rel=1e-6)
+    assert answer.outcome.startswith("mechanism")
+    assert [hinge.node for hinge in answer.hinges] == [where[0] for where, _ in expected["hinge_sequence"]]
+    for hinge, (_, load) in zip(answer.hinges, expected["hinge_sequence"], strict=True):
+        assert hinge.load == pytest.approx(load, rel=1e-6)
+
+
 @pytest.mark.parametrize("row", [0, 1, 2])
 def test_axial_force_lowers_the_collapse_load(row: int, case: Case) -> None:
     """P = M_pl,N / L exactly; OpenSees on the way there, to its own uncertainty."""

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from capacity import parse_section
+from capacity import parse_material, parse_section
+from capacity.moment_curvature import moment_curvature, moment_history
 from capacity.stress_strain import StressStrain
 from fem_reference.section_response import FibreSections
 
@@ -107,3 +108,40 @@ def test_tangent_is_the_derivative(mean: float, curvature: float) -> None:
         margin = 1e-4 * scale * (1.0 if i == 0 else 0.1)
         assert np.all(tangent[:, i] <= np.maximum(ahead, behind) + margin)
         assert np.all(tangent[:, i] >= np.minimum(ahead, behind) - margin)
+
+
+TABLE = parse_material("curve=0.0011:231 0.004:260 0.02:320 0.15:400 MPa").stress_strain
+
+
+@pytest.mark.parametrize("strain", [0.0005, 0.002, 0.01, 0.1, -0.03, 0.3])
+def test_a_fibre_follows_its_table_and_twice_its_size_on_the_way_back(strain: float) -> None:
+    """Masing: unloading from σ(ε) by Δ falls by 2 σ(Δ / 2)."""
+    one = sections_of(np.zeros(1), np.ones(1), TABLE)
+    first, _, slip = response(one, strain, 0.0)
+    assert first[0] == pytest.approx(float(TABLE.stress(strain)), rel=1e-12)
+    for share in (0.1, 0.6, 1.4, 2.0):
+        back, _, _ = response(one, strain * (1.0 - share), 0.0, slip)
+        assert first[0] - back[0] == pytest.approx(2.0 * float(TABLE.stress(0.5 * share * strain)), rel=1e-12)
+
+
+def test_a_section_with_a_table_follows_moment_curvature() -> None:
+    """The exact integration of `capacity`, loading and unloading, in the limit of many fibres."""
+    material = parse_material("curve=0.0011:231 0.004:260 0.02:320 0.15:400 MPa")
+    path = np.array([0.02, 0.1, 0.4, 0.2, -0.1, -0.5, 0.3])
+    fibres = SECTION.fibres(400)
+    sections = sections_of(fibres.y, fibres.area, material.stress_strain)
+    slip, found = sections.virgin(1), []
+    for curvature in path:
+        resultants, _, slip = response(sections, 0.0, float(curvature), slip)
+        found.append(resultants[1])
+    exact = moment_history(SECTION, material, path, fibres=2000).moment
+    assert found == pytest.approx(exact, rel=2e-4, abs=2e-4 * np.abs(exact).max())
+    first = moment_curvature(SECTION, material, path[:3]).moment
+    assert found[:3] == pytest.approx(first, rel=2e-4)
+
+
+def test_plastic_strain_is_what_stress_does_not_explain() -> None:
+    one = sections_of(np.zeros(1), np.ones(1), TABLE)
+    force, _, slip = response(one, 0.03, 0.0)
+    plastic = one.plastic_strain(np.array([[[0.03, 0.0, 0.0]]]), slip)
+    assert plastic[0, 0, 0] == pytest.approx(0.03 - force[0] / TABLE.slopes[0], rel=1e-12)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import pymunk
 
+from capacity import InputError
 from scene import MemberEnd, Node, Scene
 from sim.body_loads import BodyLoad, body_loads
 from sim.joint import DuctileJoint, Limits

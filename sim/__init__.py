@@ -9,6 +9,7 @@ from sim.laws import ElasticPlastic, FibreSection, InteractionPlastic, Law, Rigi
 from sim.member_laws import LAWS  # noqa: E402
 from sim.members import Assembly, assemble  # noqa: E402
 from sim.model import Model  # noqa: E402
+from sim.modes import natural_modes  # noqa: E402
 from sim.motion import Course, follow  # noqa: E402
 from sim.pushover import Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
@@ -40,6 +41,7 @@ __all__ = [
     "equal",
     "follow",
     "lobatto",
+    "natural_modes",
     "push_over",
     "radau",
 ]

@@ -1,0 +1,45 @@
+"""Natural frequencies of bodies held by ductile joints, while nothing yields."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pymunk
+from scipy.linalg import eigh
+
+from sim.joint import DuctileJoint
+
+
+def natural_modes(joints: Sequence[DuctileJoint]) -> tuple[np.ndarray, dict[pymunk.Body, np.ndarray]]:
+    """Frequencies [Hz], ascending, and each dynamic body's share x, y, angle in every mode, (3, n).
+
+    About where the bodies are now, without what forces in the joints add to the stiffness. A step should be a
+    twentieth of the period of the highest one that matters. Modes are scaled to a kinetic energy of ω²/2.
+    """
+    bodies = list(dict.fromkeys(body for joint in joints for body in (joint.a, joint.b)))
+    moving = [body for body in bodies if body.body_type == pymunk.Body.DYNAMIC]
+    first = {body: 3 * i for i, body in enumerate(moving)}
+    stiffness = np.zeros((3 * len(moving), 3 * len(moving)))
+    for joint in joints:
+        k = np.zeros((3, 3))
+        k[np.triu_indices(3)] = joint.law.elastic_tangent()
+        gradient = np.zeros((3, 3 * len(moving)))
+        for body, sign in ((joint.a, -1.0), (joint.b, 1.0)):
+            if body in first:
+                gradient[:, first[body] : first[body] + 3] = sign * _rates(joint, body)
+        stiffness += gradient.T @ (k + np.triu(k, 1).T) @ gradient
+    mass = np.repeat([body.mass for body in moving], 3)
+    mass[2::3] = [body.moment for body in moving]
+    squares, shapes = eigh(stiffness, np.diag(mass))
+    frequencies = np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
+    return frequencies, {body: shapes[at : at + 3] for body, at in first.items()}
+
+
+def _rates(joint: DuctileJoint, body: pymunk.Body) -> np.ndarray:
+    """How fast the joint's end on ``body`` moves along its axes and turns, for a unit of vx, vy and ω, (3, 3)."""
+    rest_a, rest_b, turn = joint.geometry[4:7]
+    angle = (1.0 - turn) * (joint.a.angle + rest_a) + turn * (joint.b.angle + rest_b)
+    c, s = np.cos(angle), np.sin(angle)
+    arm = pymunk.Vec2d(*joint.point_on(body)) - body.local_to_world(body.center_of_gravity)
+    return np.array([[c, s, s * arm.x - c * arm.y], [-s, c, c * arm.x + s * arm.y], [0.0, 0.0, 1.0]])

@@ -82,7 +82,7 @@ def test_a_mode_vibrates_with_its_frequency() -> None:
 
 @pytest.mark.parametrize("row", range(4))
 def test_a_mass_on_a_hinge_under_a_sudden_load(row: int) -> None:
-    """C6-sdof-step within 0.6 %, most of it the lever that shortens as the tip sinks; a cantilever of next to no mass."""
+    """C6-sdof-step within 0.6 %, most of it the lever that shortens; a cantilever of next to no mass."""
     case = CASES["C6-sdof-step"]
     outputs, mass = case["outputs"]["rows"][row], case["inputs"]["tip_mass_kg"]
     load = outputs["alpha"] * case["inputs"]["Ry_N"]

@@ -1,4 +1,4 @@
-"""What ``ductile reference`` answers: an object for JSON, tables, a plot."""
+"""What ``ductile reference`` answers: an object for JSON, tables, a plot, fields."""
 
 from __future__ import annotations
 
@@ -14,27 +14,30 @@ from rich.table import Table
 
 from calibration.result_cache import content_key, keep, recall
 from capacity import InputError
-from fem_reference import Pushover, pushover, remarks
+from fem_reference import PlanePush, Pushover, field_files, push_over, remarks
 from scene import Scene
 
 _ROWS = 11
 
 
 def answer(scene: Scene, tolerance: float, use_cache: bool, watch: Callable[[float], None]) -> dict[str, Any]:
-    """The reference's answer to ``scene`` as one object, kept on disk or fresh; SI."""
+    """The reference's answer to ``scene`` as one object, kept on disk or fresh; SI.
+
+    Its "fields" are texts of files by name; none of beams.
+    """
     if scene.pushed is None:
         raise InputError("motion", "this command follows pushes only", "add [push] in place of [motion]")
     key = content_key(scene, tolerance)
     kept = recall(key) if use_cache else None
     if kept is not None:
         return {**kept, "cached": True}
-    found = as_object(pushover(scene, tolerance, watch), scene)
+    found = as_object(push_over(scene, tolerance, watch), scene)
     if use_cache:
         keep(key, found)
     return {**found, "cached": False}
 
 
-def as_object(result: Pushover, scene: Scene) -> dict[str, Any]:
+def as_object(result: Pushover | PlanePush, scene: Scene) -> dict[str, Any]:
     """A result as what JSON can say; SI."""
     return {
         "displacement": result.displacement.tolist(),
@@ -56,7 +59,7 @@ def as_object(result: Pushover, scene: Scene) -> dict[str, Any]:
         "outcome": result.outcome,
         "remarks": list(remarks(scene)),
         "elements": result.elements,
-        "fibres": result.fibres,
+        "fibres": 0 if isinstance(result, PlanePush) else result.fibres,
         "imbalance": result.imbalance,
         "residual": result.residual,
         "residual_error": result.residual_error,
@@ -66,6 +69,7 @@ def as_object(result: Pushover, scene: Scene) -> dict[str, Any]:
             "plastic": result.energy.plastic.tolist(),
             "error_estimate": result.energy.error_estimate,
         },
+        "fields": field_files(result.fields) if isinstance(result, PlanePush) else {},
         "members": {
             name: {
                 "end_forces": member.end_forces[-1].tolist(),
@@ -77,7 +81,7 @@ def as_object(result: Pushover, scene: Scene) -> dict[str, Any]:
                 "curvature": member.curvature.tolist(),
                 "plastic_strain": member.plastic_strain.tolist(),
             }
-            for name, member in result.members.items()
+            for name, member in ({} if isinstance(result, PlanePush) else result.members).items()
         },
     }
 
@@ -94,12 +98,14 @@ def files(found: dict[str, Any], title: str) -> dict[str, str]:
         keys = ("station", "axial_force", "moment", "curvature", "plastic_strain")
         sections += [[name, *row] for row in zip(*(member[key] for key in keys), strict=True)]
     section_head = ["member", "station_m", "N_N", "M_Nm", "curvature_1_per_m", "plastic_strain"]
-    return {
+    texts = {
         "reference.csv": _csv(head, zip(*columns, strict=True)),
         "hinges.csv": _csv(hinge_head, hinges),
-        "sections.csv": _csv(section_head, sections),
         "reference.svg": _svg(found, title),
     }
+    if sections:
+        texts["sections.csv"] = _csv(section_head, sections)
+    return {**texts, **found["fields"]}
 
 
 def print_answer(found: dict[str, Any], console: Console) -> None:

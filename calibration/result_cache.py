@@ -26,6 +26,10 @@ def content_key(scene: Scene, *settings: object, packages: Sequence[str] = REFER
         fibres = member.section.fibres(24)
         digest.update(fibres.y.tobytes() + fibres.area.tobytes())
         digest.update(repr(sorted(vars(member.material).items())).encode())
+    if scene.meshed is not None:
+        digest.update(repr(scene.meshed.material and sorted(vars(scene.meshed.material).items())).encode())
+        mesh = Path(scene.meshed.mesh or "")
+        digest.update(mesh.read_bytes() if mesh.is_file() else b"")
     for package in packages:
         spec = importlib.util.find_spec(package)
         for folder in (spec.submodule_search_locations if spec else None) or ():

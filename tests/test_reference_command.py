@@ -9,7 +9,8 @@ import pytest
 
 from calibration import reference_command
 from calibration.cli import main
-from scene import builtin_text
+from calibration.result_cache import content_key
+from scene import builtin_text, parse_scene
 
 
 @pytest.fixture(autouse=True)
@@ -39,8 +40,8 @@ def test_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
 
 def test_results_are_kept_by_content(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     runs: list[Any] = []
-    solve = reference_command.pushover
-    monkeypatch.setattr(reference_command, "pushover", lambda *args: runs.append(args) or solve(*args))
+    solve = reference_command.push_over
+    monkeypatch.setattr(reference_command, "push_over", lambda *args: runs.append(args) or solve(*args))
     ductile("reference", "cantilever", "--json")
     first = json.loads(capsys.readouterr().out)
     ductile("reference", "cantilever", "--json")
@@ -79,3 +80,42 @@ def test_short_members_and_long_pushes_are_remarked(capsys: pytest.CaptureFixtur
     said = json.loads(capsys.readouterr().out)["remarks"]
     assert any("members.beam: L/h = 4" in remark for remark in said)
     assert any("kinematics" in remark for remark in said)
+
+
+def test_a_short_member_is_answered_in_plane_stress_with_its_fields(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    text = builtin_text("cantilever").replace('"1 m"', '"0.2 m"').replace('"74.6031746031746 mm"', '"0.6 mm"')
+    Path("short.toml").write_text(text + '\n[plane]\nroot = "contraction-free"\n', encoding="utf-8")
+    assert ductile("reference", "short.toml", "--target-error", "0.5 %", "--json") == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["method"].startswith("plane stress continuum")
+    assert "fields" not in said
+    assert any("followed as a plane stress continuum" in remark for remark in said["remarks"])
+    folder = tmp_path / "out" / "short"
+    written = {file.name for file in folder.iterdir()}
+    assert {"reference.csv", "hinges.csv", "reference.svg", "fields.pvd", "fields-00.vtu", "fields-12.vtu"} <= written
+    ductile("reference", "short.toml", "--target-error", "0.5 %", "-o", "again")
+    assert {file.name for file in Path("again").iterdir()} == written
+
+
+def test_another_mesh_is_another_answer(tmp_path: Path) -> None:
+    """The cache follows what is in the mesh file, not what it is called."""
+    scene = parse_scene(
+        """
+        title = "mesh"
+        [plane]
+        mesh = "body.msh"
+        thickness = "5 mm"
+        supports = { left = "clamped" }
+        [push]
+        node = "right"
+        direction = [1, 0]
+        distance = "1 mm"
+        """,
+        "test",
+    )
+    (tmp_path / "body.msh").write_text("one", encoding="utf-8")
+    first = content_key(scene)
+    (tmp_path / "body.msh").write_text("two", encoding="utf-8")
+    assert content_key(scene) != first

@@ -32,10 +32,13 @@ def calibrate(
     """
     from calibration.output import OutputFolder
     from calibration.progress import explained_compilation, progress_bar
+    from capacity.errors import InputError
     from scene import load_scene
 
     target = share(target_error, "--target-error")
     loaded = load_scene(scene)
+    if loaded.meshed is not None:
+        raise InputError("plane.mesh", "a mesh has no members to put joints in", "`ductile reference` follows it")
     folder = OutputFolder.of_scene(scene, output)
     messages = Console(stderr=True)
     with explained_compilation(messages):

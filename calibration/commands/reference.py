@@ -13,7 +13,7 @@ def reference(
     scene: str,
     /,
     *,
-    target_error: str = "0.05 %",
+    target_error: str | None = None,
     output: Folder = None,
     as_json: Json = False,
     cache: bool = True,
@@ -25,9 +25,11 @@ def reference(
     scene
         A TOML file, or the name of a built-in scene.
     target_error
-        Largest estimated error of the load, as a share of the largest load ("0.05 %", "0.001").
+        Largest estimated error of the load, as a share of the largest load ("0.05 %", "0.001"); 0.05 % by default, in
+        plane stress 0.2 %.
     output
-        Folder for the curve, hinges and sections as CSV and a plot as SVG; out/SCENE by default.
+        Folder for the curve, hinges and sections as CSV, a plot as SVG, and the fields of plane stress as VTU;
+        out/SCENE by default.
     as_json
         Print one JSON object, in SI units, in place of tables.
     cache
@@ -36,17 +38,18 @@ def reference(
     from calibration.output import OutputFolder
     from calibration.progress import progress_bar
     from calibration.reference_command import answer, files, print_answer
+    from fem_reference import default_tolerance
     from scene import load_scene
 
-    target = share(target_error, "--target-error")
     loaded = load_scene(scene)
+    target = default_tolerance(loaded) if target_error is None else share(target_error, "--target-error")
     folder = OutputFolder.of_scene(scene, output)
     messages = Console(stderr=True)
     with progress_bar(messages) as watch:
         found = answer(loaded, target, cache, lambda part: watch("reference", part))
     folder.write(files(found, loaded.title))
     if as_json:
-        print(json.dumps(found))
+        print(json.dumps({key: value for key, value in found.items() if key != "fields"}))
     else:
         print_answer(found, Console())
     folder.announce(messages)

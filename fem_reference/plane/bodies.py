@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,8 +18,8 @@ from fem_reference.plane.mesh_file import body_from_mesh
 from fem_reference.plane.path import Body
 from scene import Plane, Scene
 
-#: Refinements of a member's own mesh and of a mesh from a file that are worth their time.
-_MEMBER_LEVELS, _MESH_LEVELS = 3, 3
+#: Meshes of a member that are worth their time, and elements of a refined mesh from a file that are.
+_MEMBER_LEVELS, _MOST_ELEMENTS = 3, 8000
 
 
 @dataclass(frozen=True)
@@ -57,8 +58,8 @@ def plane_fault(scene: Scene) -> str | None:
         or abs(4.0 * section.plastic_modulus / square - 1.0) > 1e-9
     ):
         return "plane stress follows members of rectangular section, or a mesh"
-    if scene.kinematics != "small":
-        return "plane stress follows small displacements"
+    if scene.kinematics != "small" or scene.yielding != "gradual":
+        return "plane stress follows small displacements and gradual yielding"
     if member.releases or member.material.curve is not None:
         return "plane stress follows members without releases, of bilinear material"
     far = member.end if scene.push.node == member.start else member.start
@@ -119,7 +120,8 @@ def _meshed(scene: Scene, plane: Plane) -> PlaneScene:
 
     body(0)  # faults of the boundary are found before any long work is done
     held = ", ".join(f"{name} {kind}" for name, kind in plane.supports.items())
-    return PlaneScene(body, _MESH_LEVELS, 1.0, f"mesh {Path(plane.mesh or '').name}, {held}")
+    finer = int(math.log(max(_MOST_ELEMENTS / len(mesh.cells), 4.0), 4.0))
+    return PlaneScene(body, 1 + finer, 1.0, f"mesh {Path(plane.mesh or '').name}, {held}")
 
 
 def _member(scene: Scene) -> PlaneScene:

@@ -40,5 +40,5 @@ def test_a_scene_without_a_push_has_none() -> None:
         """,
         "test",
     )
-    with pytest.raises(InputError, match="pushes only"):
+    with pytest.raises(InputError, match="push"):
         reference_shape(scene)

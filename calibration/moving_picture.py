@@ -98,24 +98,28 @@ class Picture:
         Everything that moves or is joined, where it is most of the time; but when that is much larger than the
         structure, the structure and what is near it.
         """
-        joints = np.array([self._joint_places(k) for k in range(len(self.recording.time))])
-        bodies = [
-            pose[:, None, :2] + side * max(np.hypot(*outline.T).max() for outline in outlines)
-            for body, outlines, pose in zip(
-                self.recording.bodies, self._outlines, np.moveaxis(self.recording.pose, 1, 0), strict=True
-            )
-            if body.kind != "static" and outlines
-            for side in (-1.0, 1.0)
-        ]
-        everything = np.concatenate([joints, *bodies], axis=1)
+        everything, structure = self._whereabouts(False), self._whereabouts(True)
         low, high = _span(everything)
-        if joints.size:
-            near = _span(joints)
+        if structure.size:
+            near = _span(structure)
             size = float((near[1] - near[0]).max())
             if 0.0 < _FAR * size < float((high - low).max()):
                 low, high = near[0] - size, near[1] + size
         margin = _MARGIN * (high - low).max()
         return low - margin, high + margin
+
+    def _whereabouts(self, structure_only: bool) -> np.ndarray:
+        """Joints, and corners of squares around the bodies that move, at each time, (t, n, 2)."""
+        joints = np.array([self._joint_places(k) for k in range(len(self.recording.time))])
+        squares = [
+            pose[:, None, :2] + side * max(np.hypot(*outline.T).max() for outline in outlines)
+            for body, outlines, pose in zip(
+                self.recording.bodies, self._outlines, np.moveaxis(self.recording.pose, 1, 0), strict=True
+            )
+            if body.kind != "static" and outlines and (body.in_structure or not structure_only)
+            for side in (-1.0, 1.0)
+        ]
+        return np.concatenate([joints, *squares], axis=1)
 
 
 def _span(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -54,12 +54,12 @@ class Packer:
         """Pack ``values``, (length, channels), each channel over its own range, or around 0 to keep zeros exact."""
         values = np.asarray(values, dtype=float)
         there = np.isfinite(values)
-        low = np.where(there, values, math.inf).min(axis=0, initial=math.inf)
-        high = np.where(there, values, -math.inf).max(axis=0, initial=-math.inf)
+        some = there.any(axis=0)
+        low = np.where(some, np.where(there, values, math.inf).min(axis=0, initial=math.inf), 0.0)
+        high = np.where(some, np.where(there, values, -math.inf).max(axis=0, initial=-math.inf), 0.0)
         offset = np.zeros(values.shape[1]) if centred else 0.5 * (low + high)
-        offset = np.where(np.isfinite(offset), offset, 0.0)
         reach = np.maximum(high - offset, offset - low)
-        step = np.where(np.isfinite(reach) & (reach > 0.0), reach / _LARGEST, 1.0)
+        step = np.where(reach > 0.0, reach / _LARGEST, 1.0)
         scaled = np.where(there, np.round((np.where(there, values, 0.0) - offset) / step), ABSENT)
         self.layout[name] = {
             "first": sum(array.size for array in self.arrays),

@@ -12,6 +12,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from calibration.live_window import live
 from capacity.units import engineering
 from sim.measures import UNITS, rows
 from sim.world import World
@@ -73,6 +74,21 @@ def run(world: World, after_step: Callable[[], None], watch: Callable[[str, floa
         steps += 1
         if steps % 16 == 0:
             watch(f"{world.time:.2f} s simulated, {world.time / spent:.3g} × real time", world.time / world.duration)
+    return spent
+
+
+def run_in_window(world: World, after_step: Callable[[], None]) -> float:
+    """Step ``world`` in a window until that is closed; the seconds that the steps took."""
+    spent = 0.0
+
+    def step() -> None:
+        nonlocal spent
+        started = time.perf_counter()
+        world.step()
+        spent += time.perf_counter() - started
+        after_step()
+
+    live(world.space, step, world.dt, lambda: world.finished, world.scene.title)
     return spent
 
 

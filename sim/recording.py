@@ -88,7 +88,7 @@ class Recorder:
             raise ValueError(f"a sample every {every} s: name a positive time")
         self._space, self._every = space, every
         self._labels = dict(labels or {})
-        self._now = 0.0
+        self._now = self._step = 0.0
         # In the order in which they were first seen.
         self._bodies: dict[pymunk.Body, _Seen] = {}
         self._joints = JointWatch(space)
@@ -96,11 +96,18 @@ class Recorder:
         self._joints.note()
         self._keep()
 
-    def sample(self) -> None:
-        """Note what a step of the space has done; to be called after each."""
-        step = self._space.current_time_step
+    def sample(self, elapsed: float | None = None) -> None:
+        """Note what the space has done; to be called after each step.
+
+        Parameters
+        ----------
+        elapsed : float, optional
+            Simulated time since the last call [s]; that of the space's last step by default.
+        """
+        step = self._space.current_time_step if elapsed is None else elapsed
         periods_before = math.floor(self._now / self._every + _ROUNDING)
         self._now += step
+        self._step = step
         self._joints.note()
         if math.floor((self._now + _ROUNDING * step) / self._every) > periods_before:
             self._keep()
@@ -119,7 +126,7 @@ class Recorder:
             title=title,
             time=np.array([sample.time for sample in samples]),
             settings={
-                "step": self._space.current_time_step,
+                "step": self._step,
                 "gravity": self._space.gravity.y,
                 "iterations": float(self._space.iterations),
             },

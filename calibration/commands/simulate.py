@@ -20,10 +20,14 @@ def simulate(
     iterations: int | None = None,
     duration: str | None = None,
     csv: Annotated[bool, Parameter(name="--csv", negative=())] = False,
+    gif: Annotated[bool, Parameter(name="--gif", negative=())] = False,
+    mp4: Annotated[bool, Parameter(name="--mp4", negative=())] = False,
+    live: Annotated[bool, Parameter(name="--live", negative=())] = False,
+    reference: bool = True,
     output: Folder = None,
     as_json: Json = False,
 ) -> int:
-    """Run a scene with rigid bodies and ductile joints, and tell the figures that it measures.
+    """Run a scene with rigid bodies and ductile joints: the figures that it measures, and a replay to look at.
 
     Parameters
     ----------
@@ -37,6 +41,14 @@ def simulate(
         How long, in place of the scene's ("20 s").
     csv
         Write all joints over time to joints.csv.
+    gif
+        Write a film of the run to run.gif.
+    mp4
+        Write a film of the run to run.mp4; needs ffmpeg, or the extra "video".
+    live
+        Show the run in a window while it goes on; needs the extra "live".
+    reference
+        Lay the finite-element reference's shape over the replay of a push.
     output
         Folder for the files; out/SCENE by default.
     as_json
@@ -56,17 +68,35 @@ def simulate(
     messages = Console(stderr=True)
     with explained_compilation(messages):
         import sim  # noqa: F401
-    from calibration.simulate_command import JointTable, as_object, print_answer, run
+    from calibration.moving_picture import ffmpeg
+    from calibration.reference_shape import shape_for_replay
+    from calibration.run_pictures import Camera, pictures
+    from calibration.simulate_command import JointTable, as_object, print_answer, run, run_in_window
     from sim.world import World
 
+    if mp4:
+        ffmpeg()
     world = World(loaded, step, iterations, length)
-    table = JointTable(world, max(world.dt, world.duration / 1000.0))
-    with progress_bar(messages) as watch:
-        seconds = run(world, table.note if csv else lambda: None, watch)
+    table, camera = JointTable(world, max(world.dt, world.duration / 1000.0)), Camera(world)
+
+    def after_step() -> None:
+        camera.note()
+        if csv:
+            table.note()
+
+    if live:
+        seconds = run_in_window(world, after_step)
+    else:
+        with progress_bar(messages) as watch:
+            seconds = run(world, after_step, watch)
     answer = as_object(world, scene, seconds)
-    files = {"simulation.json": json.dumps(answer, indent=1)}
+    files: dict[str, str | bytes] = {"simulation.json": json.dumps(answer, indent=1)}
     if csv:
         files["joints.csv"] = table.text()
+    with progress_bar(messages) as watch:
+        shape = shape_for_replay(loaded, messages, lambda share: watch("reference", share)) if reference else None
+        watch("drawing", 1.0)
+        files |= pictures(camera.recording(), shape, gif, mp4)
     folder.write(files)
     if as_json:
         print(json.dumps(answer))

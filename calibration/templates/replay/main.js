@@ -60,12 +60,15 @@ async function start() {
   };
 }
 
+const count = (number, one, many) => `${number} ${number === 1 ? one : many}`;
+
 function facts(recording, sampling) {
   const dynamic = recording.bodies.filter((body) => body.kind === "dynamic").length;
   const { step, gravity, iterations } = recording.settings;
   const rate = (period) => (period > 0 ? `1/${Number((1 / period).toPrecision(4))}${THIN}s` : "none");
   return [
-    `${dynamic} bodies`, `${recording.joints.length} joints`, `step ${rate(step)}`, `${iterations} iterations`,
+    count(dynamic, "body", "bodies"), count(recording.joints.length, "joint", "joints"), `step ${rate(step)}`,
+    count(iterations, "iteration", "iterations"),
     `gravity ${digits(-gravity, 3)}${THIN}m/s²`, `sampled every ${rate(sampling)}`,
   ].join(" · ");
 }

@@ -10,8 +10,8 @@ class Stage {
   constructor(canvas, recording, palette) {
     Object.assign(this, { canvas, recording, palette });
     this.camera = new Camera(canvas);
-    this.bounds = this.extent(true);
-    this.structureBounds = this.extent(false);
+    this.bounds = this.extent(() => true);
+    this.structureBounds = this.extent((body) => body.inStructure);
     this.structureSize = this.sizeOfStructure();
     this.forces = new ForceDrawing(recording, this.structureSize);
     this.showReference = true;
@@ -34,9 +34,9 @@ class Stage {
 
   fitAll() { this.camera.fit(this.bounds); }
 
-  // Rectangle around where bodies and joints are: at the start, and most of the time later. What stands still is
-  // background and may reach far beyond, and so may a fragment.
-  extent(withBodies) {
+  // Rectangle around where joints and chosen bodies are: at the start, and most of the time later. What stands still
+  // is background and may reach far beyond, and so may a fragment.
+  extent(chosen) {
     const { recording } = this, xs = [], ys = [];
     const include = ([x, y], r = 0) => { xs.push(x - r, x + r); ys.push(y - r, y + r); };
     const reach = recording.bodies.map((body) => Math.max(0, ...body.outlines.flatMap((outline) =>
@@ -44,8 +44,8 @@ class Stage {
     const at = (k) => {
       const moment = { k, next: k, share: 0 };
       recording.joints.forEach((_, j) => { const place = recording.place(j, moment); if (place) include(place.a); });
-      if (withBodies) recording.bodies.forEach((body, i) => {
-        const pose = body.kind === "static" ? null : recording.pose(i, moment);
+      recording.bodies.forEach((body, i) => {
+        const pose = body.kind !== "static" && chosen(body) ? recording.pose(i, moment) : null;
         if (pose) include(pose, reach[i]);
       });
     };

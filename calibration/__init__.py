@@ -10,7 +10,8 @@ True
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from calibration.tuning import Calibration, Trial, calibrate
+    from calibration.trials import Trial
+    from calibration.tuning import Calibration, calibrate
 
 __all__ = ["Calibration", "Trial", "calibrate"]
 

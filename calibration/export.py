@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from calibration.tuning import Calibration, Trial
+from calibration.trials import Trial
+from calibration.tuning import Calibration
 from scene import Scene
 from sim import DuctileJoint, Model, assemble
 

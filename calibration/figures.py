@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import StrMethodFormatter
 
 from calibration.tuning import Calibration
+from sim import LAWS, RULES
 
 INK, REFERENCE, MODEL, FAINT = "#22303c", "#1f6fb2", "#d1495b", "#9aa5b1"
 STYLE = {
@@ -42,7 +43,7 @@ def curves(result: Calibration) -> Figure:
         top.plot(1e3 * push.displacement, 1e-3 * push.load, color=MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
         top.set_ylabel("load [kN]")
         top.legend(loc="lower right")
-        difference = np.interp(reference.displacement, push.displacement, push.load) - reference.load
+        difference = push.load_at_distances - reference.load
         share = 100.0 * difference / np.abs(reference.load).max()
         bottom.axhspan(-100.0 * result.target_error, 100.0 * result.target_error, color="#e9f3ec", lw=0)
         bottom.plot(1e3 * reference.displacement, share, color=MODEL, lw=1.4)
@@ -63,8 +64,8 @@ def frontier(result: Calibration) -> Figure:
         for trial in result.trials:
             point = (1e3 * trial.push.seconds_per_simulated_second, 100.0 * trial.errors.path_max)
             groups.setdefault((trial.model.rule, trial.model.law), []).append(point)
-        markers = {"lobatto": "o", "equal": "s"}
-        colours = {"elastic-plastic": FAINT, "fibre": MODEL}
+        markers = dict(zip(RULES, "osD", strict=True))
+        colours = dict(zip(LAWS, (INK, FAINT, REFERENCE, MODEL), strict=True))
         for (rule, law), points in sorted(groups.items()):
             cost, error = zip(*points, strict=True)
             axes.scatter(cost, error, s=26, marker=markers[rule], color=colours[law], label=f"{rule}, {law}")

@@ -1,38 +1,101 @@
 """Which models to try, from cheap to dear."""
 
-from sim import Model
+from __future__ import annotations
 
-# A hinge at each joint knows no gradual yielding, and more joints do not teach it.
-_HINGES = (3, 5, 8)
-_LOBATTO = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 17, 20)
-_EQUAL = (5, 9, 17, 33)
-_FIBRES = (8, 12, 16, 24)
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from calibration.member_plans import MemberPlan
+from scene import Scene
+from sim import MemberModel, Model
+
+_HINGES = (3, 5)
+_LOBATTO = tuple(
+    (joints, fibres)
+    for joints, counts in {
+        4: (8,),
+        5: (8,),
+        6: (8, 12),
+        7: (12,),
+        8: (12,),
+        9: (12, 16),
+        10: (12, 16),
+        12: (8, 12, 16),
+        14: (12, 16),
+        17: (16, 24),
+        20: (24,),
+    }.items()
+    for fibres in counts
+)
+_EQUAL = ((9, 8), (17, 12), (33, 16))
 # Where more joints and fibres no longer help it may be the step: the finest models again, stepped finer.
 _FINE_STEPPING = ((1.0 / 240.0, 2), (1.0 / 1000.0, 4))
-_FINE_JOINTS = (10, 20)
+_FINE = ((10, 16), (14, 24), (20, 24))
 
 
-def relative_cost(model: Model) -> float:
-    """Cost of a second of simulation, in units of one elastic–plastic joint stepped once.
+def relative_cost(model: Model, members: Iterable[str] = ("",)) -> float:
+    """Cost of a second of simulation of ``members``, in units of one elastic–plastic joint stepped once.
 
     Measured on a chain: what Chipmunk and the solver do for a joint costs about as much as sixteen fibres.
     """
-    fibres = model.fibres if model.law == "fibre" else 0
-    return (model.joints - 1) * (1.0 + fibres / 16.0) * (0.8 + 0.1 * model.iterations) / model.dt
+    joints = 0.0
+    for name in members:
+        own = model.of(name)
+        joints += (own.joints - 1) * (1.0 + (own.fibres if own.law == "fibre" else 0) / 16.0)
+    return joints * (0.8 + 0.1 * model.iterations) / model.dt
 
 
-def candidates() -> list[Model]:
-    """Models in order of `relative_cost`: rules, numbers of joints, laws, fibres, steps and iterations worth trying.
+def candidates(scene: Scene, plans: Mapping[str, MemberPlan]) -> list[Model]:
+    """Models in order of `relative_cost`: rules, numbers of joints, laws, fibres and steps worth trying.
 
-    Two iterations do: a structure is solved whole in each, and where nothing else acts on it the second only finds
-    that nothing is left to do.
+    They differ in the members that yield; the others have what does for them. A scene in which none yields is tried
+    with more elastic joints instead. Two iterations do: a structure is solved whole in each, and where nothing else
+    acts on it the second only finds that nothing is left to do.
     """
-    models = [Model("lobatto", joints, "elastic-plastic") for joints in _HINGES]
-    models += [Model("lobatto", joints, "fibre", fibres) for joints in _LOBATTO for fibres in _FIBRES]
-    models += [Model("equal", joints, "fibre", fibres) for joints in _EQUAL for fibres in _FIBRES]
-    models += [
-        Model("lobatto", joints, "fibre", _FIBRES[-1], dt, iterations)
-        for dt, iterations in _FINE_STEPPING
-        for joints in _FINE_JOINTS
-    ]
-    return sorted(models, key=relative_cost)
+    if all(plan.fixed is not None for plan in plans.values()):
+        models = [Model("lobatto", joints, "elastic-plastic") for joints in (3, 4, 5, 6, 8, 10, 14, 20)]
+        models[0] = replace(models[0], members=_fixed(plans))
+        models += [
+            Model("lobatto", 10, "elastic-plastic", dt=dt, iterations=iterations) for dt, iterations in _FINE_STEPPING
+        ]
+    else:
+        models = [Model("lobatto", joints, law) for joints in _HINGES for law in ("elastic-plastic", "interaction")]
+        models += [Model("lobatto", joints, "fibre", fibres) for joints, fibres in _LOBATTO]
+        models += [Model("equal", joints, "fibre", fibres) for joints, fibres in _EQUAL]
+        models += [
+            Model("lobatto", joints, "fibre", fibres, dt, iterations)
+            for dt, iterations in _FINE_STEPPING
+            for joints, fibres in _FINE
+        ]
+        models = [replace(model, members=_fixed(plans)) for model in models]
+    return sorted(models, key=lambda model: relative_cost(model, scene.members))
+
+
+def _fixed(plans: Mapping[str, MemberPlan]) -> dict[str, MemberModel]:
+    return {name: plan.fixed for name, plan in plans.items() if plan.fixed is not None}
+
+
+def cheaper(model: MemberModel) -> list[MemberModel]:
+    """Cheaper models for a member that yields, cheapest first: one rung, three rungs lower, and a hinge at each end.
+
+    A member that yields at one end only, or a little, may do with less than its neighbours.
+    """
+    if model.law != "fibre":
+        return []
+    rungs = [(joints, fibres) for joints, fibres in _LOBATTO if joints < model.joints and fibres <= model.fibres]
+    lower = [MemberModel("lobatto", joints, "fibre", fibres) for joints, fibres in (rungs[-4:-3] + rungs[-2:-1])]
+    return [MemberModel("lobatto", _HINGES[0], "elastic-plastic"), *lower]
+
+
+def groups(scene: Scene, plans: Mapping[str, MemberPlan]) -> list[list[str]]:
+    """Yielding members, those alike together, in the order of how far they yield.
+
+    Alike are members of one section and length whose forces come as near to first yield: the two halves of a symmetric
+    beam, say, which must stay symmetric.
+    """
+    found: dict[tuple[float, str, float], list[str]] = {}
+    for name, plan in plans.items():
+        if plan.fixed is None:
+            length = float(f"{scene.axis(name)[2]:.6g}")
+            found.setdefault((round(plan.utilisation, 2), scene.members[name].section.name, length), []).append(name)
+    return [found[key] for key in sorted(found)]

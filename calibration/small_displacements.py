@@ -10,6 +10,7 @@ with all of them `SHARE` times as large, and its answer is enlarged again.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import msgspec
 import numpy as np
@@ -31,6 +32,7 @@ def push_over_small(scene: Scene, model: Model, distances: np.ndarray) -> Push:
         displacement=push.displacement / SHARE,
         load=push.load / SHARE,
         load_at_distances=push.load_at_distances / SHARE,
+        force=push.force / SHARE,
         dissipated=push.dissipated / SHARE**2,
     )
 
@@ -67,8 +69,9 @@ def shrunk(scene: Scene, share: float) -> Scene:
     )
 
 
+@cache
 def _weaker(material: Material, share: float) -> Material:
-    """``material`` with stresses and strains beyond the elastic line ``share`` times as large."""
+    """``material`` with stresses and strains beyond the elastic line ``share`` times as large; the same each time."""
     curve = material.curve
     return Material(
         material.name,

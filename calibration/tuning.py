@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from calibration.errors import Errors, compare
-from calibration.planner import candidates
+import numpy as np
+
+from calibration.errors import Findings, compare, find
+from calibration.frequency import first_frequency
+from calibration.limits import what_limits
+from calibration.member_plans import MemberPlan, member_plans
+from calibration.planner import candidates, cheaper, groups, relative_cost
 from calibration.small_displacements import push_over_small
+from calibration.trials import Failure, Trial
 from capacity import Capacity
-from fem_reference import Pushover, pushover
+from fem_reference import Pushover, natural_modes, pushover
 from scene import Scene
 from sim import Model, Push, SolverError, push_over
 
@@ -17,23 +23,8 @@ from sim import Model, Push, SolverError, push_over
 REFERENCE_MARGIN = 5.0
 #: … and no worse than this, for its curve is quoted for itself.
 REFERENCE_TOLERANCE = 5e-4
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A model that was tried, the curve it gave, and how wrong that is."""
-
-    model: Model
-    push: Push
-    errors: Errors
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A model that could not take a step, and what the solver said."""
-
-    model: Model
-    reason: str
+#: Trials spent on giving single members less once a model has met the target.
+_MOST_SAVING_TRIALS = 16
 
 
 @dataclass(frozen=True)
@@ -48,12 +39,16 @@ class Calibration:
     capacity : dict[str, Capacity]
         By member.
     reference : Pushover
+    plans : dict[str, MemberPlan]
+        What each member needs.
     trials : tuple of Trial
-        In the order in which they were tried, from cheap to dear.
+        From cheap to dear.
     failures : tuple of Failure
         Models that were tried and broke down.
     best : Trial
-        The first that met the target, or else the one with the least error.
+        The cheapest that met the target, or else the one with the least error.
+    findings : Findings
+        Of the best.
     target_error : float
         Largest `Errors.path_max` wanted [-].
     """
@@ -62,9 +57,11 @@ class Calibration:
     scene: Scene
     capacity: dict[str, Capacity]
     reference: Pushover
+    plans: dict[str, MemberPlan]
     trials: tuple[Trial, ...]
     failures: tuple[Failure, ...]
     best: Trial
+    findings: Findings
     target_error: float
 
     @property
@@ -77,6 +74,22 @@ class Calibration:
         """Whether the reference's own estimated error is below a fifth of the target."""
         return self.reference.error_estimate <= self.target_error / REFERENCE_MARGIN
 
+    @property
+    def limit(self) -> str:
+        """What keeps the error from falling below the target, in words; empty when it is met."""
+        if self.target_met:
+            return ""
+        if not self.reference_good_enough:
+            return (
+                f"the reference itself is only known within {100.0 * self.reference.error_estimate:.2g} %, "
+                f"and must be {REFERENCE_MARGIN:.0f} times better than the target"
+            )
+        return what_limits(self.scene, self.best, self.trials, self.failures)
+
+    def why(self, member: str) -> str:
+        """Why the best model has what it has in a member, in words."""
+        return self.plans[member].reason(self.best.model.of(member))
+
 
 def calibrate(
     scene: Scene,
@@ -85,6 +98,8 @@ def calibrate(
     watch: Callable[[str, float], None] = lambda what, share: None,
 ) -> Calibration:
     """Find the cheapest model of ``scene`` whose path error is at most ``target_error``.
+
+    Models are tried from cheap to dear until one meets the target; then each member that yields is tried with less.
 
     Parameters
     ----------
@@ -100,6 +115,8 @@ def calibrate(
     ------
     ValueError
         When ``target_error`` is not between 0 and 1.
+    InputError
+        When the scene has no push.
     fem_reference.NotConverged, sim.SolverError
         When the reference, or every model, finds no equilibrium.
     """
@@ -107,33 +124,93 @@ def calibrate(
         raise ValueError(f"a target error of {target_error:g} is not between 0 and 1")
     tolerance = min(target_error / REFERENCE_MARGIN, REFERENCE_TOLERANCE)
     reference = pushover(scene, tolerance, lambda share: watch("reference", share))
-    models = candidates()
-    small = scene.kinematics == "small"
-    push_by = push_over_small if small else push_over
-    # The first model in a process also pays for loading the kernels; that is no part of its cost.
-    push_by(scene, models[0], reference.displacement)
-    trials: list[Trial] = []
-    failures: list[Failure] = []
+    plans = member_plans(scene, reference, target_error)
+    bench = Bench(scene, reference)
+    models = candidates(scene, plans)
     for i, model in enumerate(models):
         watch(f"model {i + 1}: {model.rule} {model.joints}, {model.law}", i / len(models))
-        try:
-            push = push_by(scene, model, reference.displacement)
-        except SolverError as error:
-            failures.append(Failure(model, str(error)))
-            continue
-        trials.append(Trial(model, push, compare(reference, push)))
-        if trials[-1].errors.path_max <= target_error:
+        trial = bench.try_out(model)
+        if trial is not None and trial.errors.path_max <= target_error:
+            _save(bench, trial, plans, target_error, watch)
             break
     watch("models", 1.0)
+    trials, failures = bench.trials, bench.failures
     if not trials:
         raise SolverError(f"none of {len(failures)} models could be stepped; the last said: {failures[-1].reason}")
+    met = [trial for trial in trials if trial.errors.path_max <= target_error]
+    best = min(met, key=lambda trial: trial.cost) if met else min(trials, key=lambda trial: trial.errors.path_max)
     return Calibration(
         name=name or scene.title,
         scene=scene,
         capacity={member: scene.capacity(member) for member in scene.members},
         reference=reference,
-        trials=tuple(trials),
+        plans=plans,
+        trials=tuple(sorted(trials, key=lambda trial: trial.cost)),
         failures=tuple(failures),
-        best=min(trials, key=lambda trial: (trial.errors.path_max > target_error, trial.errors.path_max)),
+        best=best,
+        findings=find(scene, reference, best.push, (_reference_frequency(scene), first_frequency(scene, best.model))),
         target_error=target_error,
     )
+
+
+class Bench:
+    """Where models of a scene are tried against its reference.
+
+    Attributes
+    ----------
+    trials : list of Trial
+    failures : list of Failure
+    """
+
+    def __init__(self, scene: Scene, reference: Pushover) -> None:
+        self.scene, self.reference = scene, reference
+        self.trials: list[Trial] = []
+        self.failures: list[Failure] = []
+        # The first model in a process also pays for loading the kernels; that is no part of its cost.
+        push_model(scene, Model("lobatto", 2, "elastic-plastic"), reference.displacement[:2])
+
+    def try_out(self, model: Model) -> Trial | None:
+        """Push ``model`` as the reference was pushed; None when it breaks down."""
+        try:
+            push = push_model(self.scene, model, self.reference.displacement)
+        except SolverError as error:
+            self.failures.append(Failure(model, str(error)))
+            return None
+        trial = Trial(model, push, compare(self.reference, push), relative_cost(model, self.scene.members))
+        self.trials.append(trial)
+        return trial
+
+
+def push_model(scene: Scene, model: Model, distances: np.ndarray) -> Push:
+    """Push ``model`` through ``distances`` [m], with what geometry the scene's kinematics asks for."""
+    return (push_over_small if scene.kinematics == "small" else push_over)(scene, model, distances)
+
+
+def _save(
+    bench: Bench,
+    trial: Trial,
+    plans: dict[str, MemberPlan],
+    target_error: float,
+    watch: Callable[[str, float], None],
+) -> None:
+    """Give members that yield less, those that yield least first, while the target is met; members alike get alike."""
+    alike = groups(bench.scene, plans)
+    left = _MOST_SAVING_TRIALS if len(alike) > 1 else 0
+    for names in alike:
+        for own in cheaper(trial.model.of(names[0])):
+            if left == 0:
+                return
+            left -= 1
+            watch(f"{names[0]} with {own.joints} joints", 1.0 - left / _MOST_SAVING_TRIALS)
+            less = bench.try_out(replace(trial.model, members={**trial.model.members, **dict.fromkeys(names, own)}))
+            if less is not None and less.errors.path_max <= target_error:
+                trial = less
+                break
+
+
+def _reference_frequency(scene: Scene) -> float:
+    """Lowest natural frequency of the reference [Hz]; 0 for a structure that is free to move."""
+    try:
+        return float(natural_modes(scene, 1).frequency[0])
+    except RuntimeError:  # SuperLU's: the stiffness is singular
+        return 0.0

@@ -7,8 +7,8 @@ chipmunk.verify()
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits  # noqa: E402  (nothing may run on structs that do not fit)
 from sim.laws import ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic  # noqa: E402
 from sim.member_laws import LAWS  # noqa: E402
-from sim.members import Assembly, assemble  # noqa: E402
-from sim.model import Model  # noqa: E402
+from sim.members import Assembly, JointPlace, assemble  # noqa: E402
+from sim.model import MemberModel, Model  # noqa: E402
 from sim.modes import natural_modes  # noqa: E402
 from sim.motion import Course, follow  # noqa: E402
 from sim.pushover import Push, push_over  # noqa: E402
@@ -27,8 +27,10 @@ __all__ = [
     "ElasticPlastic",
     "FibreSection",
     "InteractionPlastic",
+    "JointPlace",
     "Law",
     "Limits",
+    "MemberModel",
     "Model",
     "Push",
     "Recorder",

@@ -1,9 +1,10 @@
 """Loads under displacement control: a pattern of forces, multiplied so that a node goes where it is wanted.
 
 What the solver prescribes is the displacement w that the pattern p works on (see `sim.kernels.spread`), for which its
-energy stays convex. With y the velocities that a unit impulse of p gives, and g the node's displacement over the
-bodies', the node goes on by g·y / p·y for a unit of w. A force on the node alone is the pattern for which w is the
-node's own displacement.
+energy stays convex. How far the node goes for a unit of w changes as joints yield, and from step to step it jumps, as
+fibres yield and unload by turns and as the structure vibrates. So the driver goes by what the node has done for w in
+the last while, and makes up little by little for what it is off its way: a driver that followed every jump would shake
+the structure. A force on the node alone is the pattern for which w is the node's own displacement.
 """
 
 from __future__ import annotations
@@ -16,6 +17,9 @@ import numpy as np
 from sim.body_loads import BodyLoad
 from sim.pieces import NodePoint
 from sim.structure import Structure
+
+#: Time over which the node's ways are remembered, and over which it is brought back to where it is wanted [s].
+_MEMORY, _RETURN = 0.5, 0.2
 
 
 class LoadDriver:
@@ -38,29 +42,46 @@ class LoadDriver:
         self._origin = np.array(node.now())
         size = sum(load.force[0] ** 2 + load.force[1] ** 2 + load.moment**2 for load in loads)
         self._stiffness = max(joint.law.elastic_tangent()[0] for joint in structure.joints) / size
-        self._first = 1e-9 * size**0.5
-        self._ratio = 0.0
         self._pattern = np.zeros((len(structure.bodies), 3))
+        # w for a unit of the node's displacement d: Σ Δw Δd / Σ Δd² over the last while, the tangent's at first.
+        self._ratio = 0.0
+        self._both = self._own = 0.0
+        self._gap = 1e-9 * size**0.5
+        self._wanted = 0.0
         self.displacement = self.factor = 0.0
 
     def aim(self, wanted: float, dt: float) -> None:
         """Before a step of ``dt`` [s]: have the node at ``wanted`` [m] along its way at the step's end."""
         self._pattern = self._forces(dt)
-        here = float((self._node.ahead(dt) - self._origin) @ self._direction)
-        # The first step, without a way to go, finds the ratio.
-        gap = self._ratio * (wanted - here) if self._ratio else self._first
-        self._structure.drive(self._pattern, self._stiffness, gap)
+        if self._ratio:
+            behind = self._wanted - self.displacement
+            ahead = wanted - self._wanted + min(1.0, dt / _RETURN) * behind
+            # The spring itself gives by as much as the loads need.
+            self._gap = self._ratio * ahead + self.factor / self._stiffness
+        self._wanted = wanted
+        self._structure.drive(self._pattern, self._stiffness, self._gap)
 
     def read(self, dt: float) -> None:
         """After that step: where the node is, and by what the loads were multiplied."""
+        before = self.displacement
+        self.displacement = float((self._node.ahead(dt) - self._origin) @ self._direction)
+        self.factor = self._structure.load_factor
+        moved, worked = self.displacement - before, self._gap - self.factor / self._stiffness
+        keep = math.exp(-dt / _MEMORY)
+        self._both = keep * self._both + worked * moved
+        self._own = keep * self._own + moved * moved
+        if not self._ratio:
+            self._ratio = self._tangent(dt)
+        elif self._both * self._ratio > 0.0:
+            self._ratio = self._both / self._own
+
+    def _tangent(self, dt: float) -> float:
+        """Ratio g·y / p·y of w to d for the velocities y that a unit impulse of the pattern gives."""
         arm = self._node.ahead(dt) - self._centre.ahead(dt)
         x, y = self._direction
         response = self._structure.pattern_response
         along_node = float(np.array([x, y, arm[0] * y - arm[1] * x]) @ response[self._index[self._node.body]])
-        if along_node > 0.0:
-            self._ratio = float(np.sum(self._pattern * response)) / along_node
-        self.displacement = float((self._node.ahead(dt) - self._origin) @ self._direction)
-        self.factor = self._structure.load_factor
+        return float(np.sum(self._pattern * response)) / along_node if along_node else 0.0
 
     def _forces(self, dt: float) -> np.ndarray:
         """Forces and moments of the loads about the bodies' centres, where these will be then."""

@@ -28,8 +28,9 @@ class MemberLaws:
     """
 
     def __init__(self, scene: Scene, model: Model) -> None:
-        if model.law not in LAWS:
-            raise ValueError(f'there is no joint law "{model.law}"; the laws are {", ".join(LAWS)}')
+        for law in {model.of(name).law for name in scene.members}:
+            if law not in LAWS:
+                raise ValueError(f'there is no joint law "{law}"; the laws are {", ".join(LAWS)}')
         for name, member in scene.members.items():
             if member.material.curve is not None:
                 cure = 'give the slope beyond yield instead, for example "Et=2 GPa"; `ductile reference` follows tables'
@@ -43,14 +44,15 @@ class MemberLaws:
         A ``pinned`` one bears no moment; an ``elastic`` one does not yield.
         """
         member, c = self._scene.members[name], self._scene.capacity(name)
+        model = self._model.of(name)
         stiffness = self._stiffness(name, c, length)
         if pinned:
-            if self._model.law == "rigid-plastic":
+            if model.law == "rigid-plastic":
                 return RigidPlastic((c.N_max, c.Q_max, 0.0))
             return ElasticPlastic((*stiffness[:2], 0.0), (c.N_max, c.Q_max, 0.0))
         if elastic:
             return ElasticPlastic(stiffness, (math.inf, math.inf, math.inf))
-        match self._model.law:
+        match model.law:
             case "rigid-plastic":
                 return RigidPlastic.of_section(c)
             case "elastic-plastic":
@@ -58,7 +60,7 @@ class MemberLaws:
             case "interaction":
                 return InteractionPlastic(stiffness, self._surface(member))
             case _:
-                fibres, material = member.section.fibres(self._model.fibres), member.material
+                fibres, material = member.section.fibres(model.fibres), member.material
                 return FibreSection(
                     length=length,
                     y=fibres.y,

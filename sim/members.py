@@ -15,7 +15,7 @@ from sim.body_loads import BodyLoad, body_loads
 from sim.joint import DuctileJoint, Limits
 from sim.laws import ElasticPlastic
 from sim.member_laws import MemberLaws
-from sim.model import Model
+from sim.model import MemberModel, Model
 from sim.pieces import NodePoint, Piece, Pieces, Span
 from sim.rules import Rule, member_rule
 from sim.shapes import keep_neighbours_apart
@@ -111,7 +111,7 @@ def assemble(
         When its hinges are too long for a member.
     """
     laws = MemberLaws(scene, model)
-    rules = {name: _rule(scene, name, model) for name in scene.members}
+    rules = {name: _rule(scene, name, model.of(name)) for name in scene.members}
     if space is None:
         space = pymunk.Space()
         space.iterations = model.iterations
@@ -142,7 +142,7 @@ def assemble(
     )
 
 
-def _rule(scene: Scene, name: str, model: Model) -> Rule:
+def _rule(scene: Scene, name: str, model: MemberModel) -> Rule:
     hinge = model.hinge_length
     if hinge is None:
         low, high = scene.members[name].section.outline.extent()

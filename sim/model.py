@@ -1,13 +1,25 @@
 """How a scene is turned into rigid bodies, and how these are stepped."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from sim.joint import IMPLICIT_EULER
 
 
 @dataclass(frozen=True)
+class MemberModel:
+    """Where the joints of one member go, and by what law they give way; attributes as those of `Model`."""
+
+    rule: str
+    joints: int
+    law: str
+    fibres: int = 8
+    hinge_length: float | None = None
+
+
+@dataclass(frozen=True)
 class Model:
-    """Where the joints of a member go, by what law they give way, and how they are stepped.
+    """Where the joints of the members go, by what law they give way, and how they are stepped.
 
     Attributes
     ----------
@@ -30,6 +42,8 @@ class Model:
         β and δ of the time integration.
     hinge_length : float, optional
         Length of the hinges of the rule ``"radau"`` [m]; by default the depth of each member's section.
+    members : mapping
+        By name, the members that have a model of their own.
     """
 
     rule: str
@@ -41,3 +55,9 @@ class Model:
     damping: float = 0.0
     scheme: tuple[float, float] = IMPLICIT_EULER
     hinge_length: float | None = None
+    members: Mapping[str, MemberModel] = field(default_factory=dict, hash=False)
+
+    def of(self, member: str) -> MemberModel:
+        """The model of one member."""
+        own = MemberModel(self.rule, self.joints, self.law, self.fibres, self.hinge_length)
+        return self.members.get(member, own)

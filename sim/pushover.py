@@ -13,14 +13,17 @@ import pymunk
 from scene import Scene
 from sim.body_loads import BodyLoad
 from sim.load_driver import LoadDriver
-from sim.members import assemble
+from sim.members import JointPlace, assemble
 from sim.model import Model
 from sim.settling import settle
+from sim.structure import SolverError
 
 #: How long a push takes in the simulation [s]: slow against the vibrations of ordinary members, which the implicit
 #: Euler scheme damps.
 DURATION = 4.0
 _EASE = 0.1
+# A push of which more steps than this share found no solution is none.
+_MOST_UNCONVERGED = 0.02
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,10 @@ class Push:
         Force on it along the push [N].
     load_at_distances : (n,) float
         Load at each of the distances that were given, where the node itself passed it [N].
+    force : (k, joints, 3) float
+        N [N], Q [N] and M [N m] of the members' joints after each step.
+    places : tuple of JointPlace
+        Where these joints are.
     bodies, joints : int
         Dynamic bodies, and joints of the members.
     steps : int
@@ -54,6 +61,8 @@ class Push:
     displacement: np.ndarray
     load: np.ndarray
     load_at_distances: np.ndarray
+    force: np.ndarray
+    places: tuple[JointPlace, ...]
     bodies: int
     joints: int
     steps: int
@@ -101,7 +110,7 @@ def push_over(
     Raises
     ------
     SolverError
-        When a step cannot be taken.
+        When a step cannot be taken, or too many find no solution.
     """
     assembly = assemble(scene, model, shapes=False)
     settle(scene, assembly, 1e-9 * scene.push.way())
@@ -115,6 +124,7 @@ def push_over(
     driver = LoadDriver(structure, loads, node, scene.push_direction())
     newton_before = structure.newton_steps
     displacement, load = np.empty(steps), np.empty(steps)
+    force = np.zeros((steps + 1, len(assembly.places), 3))
     seconds = 0.0
     for k in range(steps):
         driver.aim(travel[k], model.dt)
@@ -123,6 +133,12 @@ def push_over(
         seconds += time.thread_time() - started
         driver.read(model.dt)
         displacement[k], load[k] = driver.displacement, driver.factor
+        force[k + 1] = structure.force[: len(assembly.places)]
+        if structure.unconverged > _MOST_UNCONVERGED * steps:
+            count = structure.unconverged
+            raise SolverError(
+                f"{count} of the first {k + 1} steps found no solution; shorten them, or take fewer joints"
+            )
         if k % 64 == 0:
             watch(k / steps)
     displacement, load = np.append(0.0, displacement), np.append(0.0, load)
@@ -134,6 +150,8 @@ def push_over(
         displacement=displacement,
         load=load,
         load_at_distances=np.concatenate(passed),
+        force=force,
+        places=assembly.places,
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
         joints=len(assembly.places),
         steps=steps,

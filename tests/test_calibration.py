@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 from cantilevers import SECTIONS, cantilever, reference_cantilever
 from conftest import CASES
+from frames import fixed_fixed, propped
 
 from calibration import calibrate
-from calibration.planner import candidates, relative_cost
+from calibration.member_plans import MemberPlan
+from calibration.planner import candidates, groups, relative_cost
+from scene import parse_scene
 
 
 @pytest.mark.parametrize("name", SECTIONS)
@@ -66,10 +69,71 @@ def test_hardening_is_in_both_models() -> None:
     assert result.reference.load[-1] > 1.05 * 29375.0
 
 
-def test_models_are_tried_from_cheap_to_dear() -> None:
-    costs = [relative_cost(model) for model in candidates()]
+def cantilever_on_column() -> str:
+    return """
+    title = "beam on a column"
+    gravity = 0.0
+    [nodes.foot]
+    at = [0.0, 0.0]
+    support = "clamped"
+    [nodes.knee]
+    at = [0.0, 3.0]
+    [nodes.tip]
+    at = [3.0, 3.0]
+    [members.column]
+    from = "foot"
+    to = "knee"
+    section = "HEB 300"
+    material = "S235"
+    [members.beam]
+    from = "knee"
+    to = "tip"
+    section = "IPE 200"
+    material = "S235"
+    [push]
+    node = "tip"
+    direction = [0, -1]
+    distance = 0.2
+    """
+
+
+YIELDING, ELASTIC = MemberPlan("elastic-plastic", 1.4, 0.5), MemberPlan("elastic", 0.31, 0.4)
+
+
+def test_models_are_tried_from_cheap_to_dear_and_differ_in_what_yields() -> None:
+    scene = propped(0.02)
+    models = candidates(scene, {"A-C": YIELDING, "C-B": ELASTIC})
+    costs = [relative_cost(model, scene.members) for model in models]
     assert costs == sorted(costs)
-    assert len(set(candidates())) == len(costs)
+    assert len(set(models)) == len(models)
+    assert {model.of("C-B").joints for model in models} == {3}
+    assert len({model.of("A-C") for model in models}) > 10
+
+
+def test_members_alike_are_one_group() -> None:
+    scene = fixed_fixed(0.05)
+    assert groups(scene, {"A-C": YIELDING, "C-B": YIELDING}) == [["A-C", "C-B"]]
+    assert groups(scene, {"A-C": YIELDING, "C-B": ELASTIC}) == [["A-C"]]
+
+
+def test_a_member_that_stays_elastic_gets_three_elastic_joints_and_the_report_says_why() -> None:
+    """A column of HEB 300 under a beam of IPE 200 that folds: both are followed within the target."""
+    text = cantilever_on_column()
+    result = calibrate(parse_scene(text, "test"), 0.01)
+    assert result.target_met
+    assert result.plans["column"].kind == "elastic"
+    assert result.plans["beam"].kind == "elastic-plastic"
+    model = result.best.model
+    assert (model.of("column").joints, model.of("column").law) == (3, "elastic-plastic")
+    used = result.plans["column"].utilisation
+    assert 0.0 < used < 1.0
+    assert used == pytest.approx(
+        result.reference.load[-1] * 3.0 / result.capacity["column"].M_yield
+        + result.reference.load[-1] / result.capacity["column"].N_max,
+        rel=0.02,
+    )
+    assert "3 elastic joints" in result.why("column")
+    assert "fibres" in result.why("beam") or "interaction" in result.why("beam")
 
 
 @pytest.mark.parametrize("target", [0.0, -0.1, 1.0])

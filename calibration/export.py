@@ -80,6 +80,7 @@ def _tried(trial: Trial) -> dict[str, Any]:
         "bodies": trial.push.bodies,
         "joints": trial.push.joints,
         **asdict(trial.errors),
+        "cost": trial.cost,
         "seconds": trial.push.seconds,
         "seconds_per_simulated_second": trial.push.seconds_per_simulated_second,
         "microseconds_per_joint_step": trial.push.microseconds_per_joint_step,

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from calibration.errors import Findings, compare, find
-from calibration.frequency import first_frequency
 from calibration.limits import what_limits
 from calibration.member_plans import MemberPlan, member_plans
 from calibration.planner import candidates, cheaper, groups, relative_cost
@@ -17,7 +16,8 @@ from calibration.trials import Failure, Trial
 from capacity import Capacity
 from fem_reference import Pushover, natural_modes, pushover
 from scene import Scene
-from sim import Model, Push, SolverError, push_over
+from sim import Model, Push, SolverError, assemble, push_over
+from sim import natural_modes as modes_of_joints
 
 #: The reference must be this many times better than the target, …
 REFERENCE_MARGIN = 5.0
@@ -148,7 +148,7 @@ def calibrate(
         trials=tuple(sorted(trials, key=lambda trial: trial.cost)),
         failures=tuple(failures),
         best=best,
-        findings=find(scene, reference, best.push, (_reference_frequency(scene), first_frequency(scene, best.model))),
+        findings=find(scene, reference, best.push, (_reference_frequency(scene), _model_frequency(scene, best.model))),
         target_error=target_error,
     )
 
@@ -214,3 +214,8 @@ def _reference_frequency(scene: Scene) -> float:
         return float(natural_modes(scene, 1).frequency[0])
     except RuntimeError:  # SuperLU's: the stiffness is singular
         return 0.0
+
+
+def _model_frequency(scene: Scene, model: Model) -> float:
+    """Lowest natural frequency of ``model`` [Hz]."""
+    return float(modes_of_joints(assemble(scene, model, shapes=False).joints)[0][0])

@@ -134,32 +134,42 @@ def _finite(value: float | list[float]) -> float | list[float | None] | None:
     return value if math.isfinite(value) else None
 
 
+def key_figures(answer: dict[str, Any]) -> list[tuple[str, str]]:
+    """What a person wants to know of an answer, and its value with its unit; the same at any speed."""
+    figures = []
+    for name, value in answer["measures"].items():
+        unit = answer["units"][name]
+        values = value if isinstance(value, list) else [value]
+        figures.append((name, ", ".join("–" if v is None else _shown(v, unit) for v in values) or "–"))
+    if "push" in answer:
+        figures.append(("pushed by", engineering(answer["push"]["displacement"], "m")))
+        factor = answer["push"]["load_is_factor"]
+        figures.append(
+            ("load factor" if factor else "load at the end", f"{answer['push']['load']:.5g}{'' if factor else ' N'}")
+        )
+    joints = answer["joints"]
+    broken = ", ".join(f"{entry['joint']} at {entry['time']:.3f} s" for entry in joints["broken"]) or "none"
+    figures.append(("joints", f"{joints['count']}, of which {joints['yielded']} yielded; broken: {broken}"))
+    most = joints["most_used"]
+    if most is not None and most["capacity_used"] > 0.0:
+        figures.append(("most used joint", f"{most['joint']}, {most['capacity_used']:.1%} of its plastic capacity"))
+    figures.append(("plastic work in joints", engineering(joints["plastic_work"], "J")))
+    figures.append(
+        ("steps", f"{answer['steps']} of {engineering(answer['dt'], 's')}, {answer['iterations']} iterations")
+    )
+    if answer["unconverged"]:
+        figures.append(("steps that did not converge", str(answer["unconverged"])))
+    return figures
+
+
 def print_answer(answer: dict[str, Any], console: Console) -> None:
     """Key figures for a person."""
     console.print(f"[bold]{answer['title']}[/bold]")
     table = Table("", "", box=None, show_header=False)
-    for name, value in answer["measures"].items():
-        unit = answer["units"][name]
-        values = value if isinstance(value, list) else [value]
-        table.add_row(name, ", ".join("–" if v is None else _shown(v, unit) for v in values) or "–")
-    if "push" in answer:
-        table.add_row("pushed by", engineering(answer["push"]["displacement"], "m"))
-        factor = answer["push"]["load_is_factor"]
-        table.add_row(
-            "load factor" if factor else "load at the end", f"{answer['push']['load']:.5g}{'' if factor else ' N'}"
-        )
-    joints = answer["joints"]
-    broken = ", ".join(f"{entry['joint']} at {entry['time']:.3f} s" for entry in joints["broken"]) or "none"
-    table.add_row("joints", f"{joints['count']}, of which {joints['yielded']} yielded; broken: {broken}")
-    most = joints["most_used"]
-    if most is not None and most["capacity_used"] > 0.0:
-        table.add_row("most used joint", f"{most['joint']}, {most['capacity_used']:.1%} of its plastic capacity")
-    table.add_row("plastic work in joints", engineering(joints["plastic_work"], "J"))
-    table.add_row("steps", f"{answer['steps']} of {engineering(answer['dt'], 's')}, {answer['iterations']} iterations")
+    for row in key_figures(answer):
+        table.add_row(*row)
     if answer["real_time_factor"] is not None:
         table.add_row("speed", f"{answer['real_time_factor']:.3g} × real time")
-    if answer["unconverged"]:
-        table.add_row("steps that did not converge", str(answer["unconverged"]))
     console.print(table)
 
 

@@ -2,7 +2,7 @@
 
 from fem_reference.dynamics import MotionResult, motion
 from fem_reference.hinge_events import HingeEvent
-from fem_reference.member_results import MemberResult
+from fem_reference.member_results import MemberErrors, MemberResult
 from fem_reference.modes import Modes, natural_modes
 from fem_reference.paths import NotConverged
 from fem_reference.plane import Fields, PlanePush, field_files, plane_push
@@ -14,6 +14,7 @@ __all__ = [
     "Energy",
     "Fields",
     "HingeEvent",
+    "MemberErrors",
     "MemberResult",
     "Modes",
     "MotionResult",

@@ -48,6 +48,8 @@ class HingeEvent:
     error_estimate : float
         Difference of the load from that of the next coarser model, over the largest load; 1 where that has no such
         hinge.
+    displacement_error : float, optional
+        Difference of the displacement [m]; None where that has no such hinge.
     """
 
     member: str
@@ -56,6 +58,7 @@ class HingeEvent:
     load: float
     displacement: float
     error_estimate: float = 1.0
+    displacement_error: float | None = None
 
 
 def plastic_moment(y: np.ndarray, area: np.ndarray, yield_stress: float, N: np.ndarray, M: np.ndarray) -> np.ndarray:

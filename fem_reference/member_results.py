@@ -12,6 +12,30 @@ from scene import Scene
 
 
 @dataclass(frozen=True)
+class MemberErrors:
+    """Differences of one member's results from those of half the elements and fibres.
+
+    Attributes
+    ----------
+    end_forces : (3,) float
+        Largest of N, Q [N] and M [N m] at either end, anywhere along the path.
+    axial_force, moment, curvature, plastic_strain : (m,) float
+        At each quadrature point; the coarser model's values lie on straight lines between its own. Where a hinge has
+        formed without hardening, curvature and plastic strain grow without limit as elements shrink, for the rotation
+        is all in one point: an estimate as large as the value says so.
+    shape : float
+        Largest of any displacement at an element's end [m].
+    """
+
+    end_forces: np.ndarray
+    axial_force: np.ndarray
+    moment: np.ndarray
+    curvature: np.ndarray
+    plastic_strain: np.ndarray
+    shape: float
+
+
+@dataclass(frozen=True)
 class MemberResult:
     """One member; k points of the path, m quadrature points in order along the member, j element ends.
 
@@ -41,6 +65,25 @@ class MemberResult:
     plastic_strain: np.ndarray
     point: np.ndarray
     shape: np.ndarray
+
+    def differences(self, coarse: MemberResult) -> MemberErrors:
+        """How far this is from the result of a coarser model."""
+
+        def gap(name: str) -> np.ndarray:
+            other = np.interp(self.station, coarse.station, getattr(coarse, name))
+            return np.asarray(np.abs(getattr(self, name) - other))
+
+        both = min(len(self.end_forces), len(coarse.end_forces))
+        shape = np.stack([np.interp(self.point, coarse.point, coarse.shape[:, i]) for i in (0, 1)], axis=1)
+        at_points = np.isclose(self.point[:, None], coarse.point, rtol=0.0, atol=1e-9 * self.point[-1]).any(axis=1)
+        return MemberErrors(
+            np.abs(self.end_forces[:both] - coarse.end_forces[:both]).max(axis=(0, 1)),
+            gap("axial_force"),
+            gap("moment"),
+            gap("curvature"),
+            gap("plastic_strain"),
+            float(np.abs(self.shape - shape)[at_points].max()),
+        )
 
 
 def member_results(

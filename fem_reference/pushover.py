@@ -12,7 +12,7 @@ from fem_reference.frame import Frame
 from fem_reference.frame_mesh import build_frame, control_vector
 from fem_reference.hinge_events import HingeEvent, hinge_events
 from fem_reference.legs import even_legs, resolved_legs, with_events
-from fem_reference.member_results import MemberResult, member_results
+from fem_reference.member_results import MemberErrors, MemberResult, member_results
 from fem_reference.paths import State, Trace, trace
 from scene import Scene
 
@@ -77,6 +77,8 @@ class Pushover:
         How the path ended: what was reached, or at which limit point or mechanism.
     members : dict[str, MemberResult]
         Forces along the path, and the state at its end.
+    member_errors : dict[str, MemberErrors]
+        Error estimate of each of these numbers.
     residual : float
         Displacement at the end of an unloaded path, or the last displacement of another [m].
     residual_error : float
@@ -96,6 +98,7 @@ class Pushover:
     hinges: tuple[HingeEvent, ...]
     outcome: str
     members: dict[str, MemberResult]
+    member_errors: dict[str, MemberErrors]
     residual: float
     residual_error: float
     energy: Energy
@@ -146,6 +149,10 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
         coarse = last
     theories = " and ".join(sorted({m.theory.replace("-", "–").title() for m in scene.members.values()}))
     path = fine.trace
+    members, rough = (
+        member_results(scene, solved.frame, solved.trace, solved.end.displacement, solved.end.response)
+        for solved in (fine, coarse)
+    )
     external, elastic, plastic = (np.array(values) for values in (path.external, path.elastic, path.plastic))
     return Pushover(
         method=f"displacement-based {_YIELDING[scene.yielding]} ({theories}, cubic Hermite), "
@@ -158,7 +165,8 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
         seconds=time.perf_counter() - started,
         hinges=_with_errors(fine.hinges, coarse.hinges, float(np.abs(path.load).max())),
         outcome=path.stopped or _outcome(scene, path),
-        members=member_results(scene, fine.frame, path, fine.end.displacement, fine.end.response),
+        members=members,
+        member_errors={name: member.differences(rough[name]) for name, member in members.items()},
         residual=path.displacement[-1],
         residual_error=abs(path.displacement[-1] - coarse.trace.displacement[-1]),
         energy=Energy(external, elastic, plastic, _energy_error(path, coarse.trace)),
@@ -200,10 +208,14 @@ def _energy_error(fine: Trace, coarse: Trace) -> float:
 def _with_errors(fine: tuple[HingeEvent, ...], coarse: tuple[HingeEvent, ...], scale: float) -> tuple[HingeEvent, ...]:
     """``fine`` with the differences of its loads from the nearest hinges of ``coarse``."""
     judged = []
-    for event in fine:
+    for found in fine:
+        event = found
         same = [e for e in coarse if e.node == event.node and (e.node or e.member == event.member)]
         near = min(same, key=lambda e: abs(e.position - event.position), default=None)
-        judged.append(event if near is None else replace(event, error_estimate=abs(near.load - event.load) / scale))
+        if near is not None:
+            load, moved = abs(near.load - event.load) / scale, abs(near.displacement - event.displacement)
+            event = replace(event, error_estimate=load, displacement_error=moved)
+        judged.append(event)
     return tuple(judged)
 
 

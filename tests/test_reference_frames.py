@@ -254,3 +254,28 @@ def _starts(frame: Any) -> np.ndarray:
         first += len(mesh.weights)
         rows.append(np.array(ends[name[0]]) + np.vstack([np.zeros(2), np.cumsum(spans, axis=0)[:-1]]))
     return np.concatenate(rows)
+
+
+def test_every_quoted_number_has_an_error_estimate_that_covers_its_error() -> None:
+    """Held against a model of four times the elements and fibres."""
+    scene = portal(4.0, 6.0, 1.0, "B", 0.06)
+    rough, fine = pushover(scene, 5e-3), pushover(scene, 1e-4)
+    assert fine.elements >= 4 * rough.elements
+    for name, member in rough.members.items():
+        errors, exact = rough.member_errors[name], fine.members[name]
+        ends = np.abs(member.end_forces[-1] - exact.end_forces[-1]).max(axis=0)
+        assert np.all(ends <= errors.end_forces + 1e-6 * np.abs(exact.end_forces).max())
+        shape = [np.interp(member.point, exact.point, exact.shape[:, i]) for i in (0, 1)]
+        assert np.abs(member.shape.T - shape).max() <= 1.5 * errors.shape
+        moment = np.interp(member.station, exact.station, exact.moment)
+        assert np.abs(member.moment - moment).max() <= 1.5 * errors.moment.max()
+        curvature = np.interp(member.station, exact.station, exact.curvature)
+        elastic = member.plastic_strain < 1e-9
+        assert np.abs(member.curvature - curvature)[elastic].max() <= 1.5 * errors.curvature[elastic].max()
+    assert (
+        rough.energy.error_estimate
+        >= abs(rough.energy.plastic[-1] - fine.energy.plastic[-1]) / fine.energy.external[-1]
+    )
+    for hinge, exact_hinge in zip(rough.hinges, fine.hinges, strict=False):
+        assert hinge.node == exact_hinge.node
+        assert abs(hinge.load - exact_hinge.load) <= 2.0 * hinge.error_estimate * rough.load.max()

@@ -1,6 +1,4 @@
-"""Equilibrium paths of a frame: dead loads first, then a programme of displacements, then perhaps back to zero load.
-
-Each step solves
+"""Points of equilibrium of a frame, one after the other. Each step solves
 
     F_int(d) = W + λ p,   c · d + e λ = goal
 
@@ -10,7 +8,6 @@ path is no obstacle; with (0, 1) the load.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -29,7 +26,6 @@ _MOST_ITERATIONS, _LATE = 25, 10
 _GROWTH = 1e3
 _MOST_CUTS = 5
 _SMALLEST_CUT = 2.0**-12
-_UNLOADING_STEPS = 20
 
 
 class NotConverged(RuntimeError):
@@ -65,55 +61,6 @@ class Trace:
     plastic: list[float] = field(default_factory=list)
     imbalance: float = 0.0
     stopped: str = ""
-
-
-def trace(
-    frame: Frame,
-    control: np.ndarray,
-    legs: Sequence[np.ndarray],
-    unload: bool = False,
-    watch: Callable[[float], None] = lambda share: None,
-) -> tuple[Trace, State]:
-    """The path of ``frame`` through ``legs``, and its state at the end.
-
-    Parameters
-    ----------
-    frame : Frame
-    control : (size,) float
-        Vector c: the displacement under control is c · d.
-    legs : sequence of (k,) float
-        Displacements under control at which points are wanted, leg by leg, from where it is under dead loads [m].
-    unload : bool
-        Whether to go back to λ = 0 at the end.
-    watch : callable
-        Told the finished share of the path, 0 to 1.
-
-    Raises
-    ------
-    NotConverged
-        When the dead loads find no equilibrium. Later on, the path so far is returned.
-    """
-    state = State(frame, control)
-    state.carry_dead_loads()
-    points = Trace()
-    start = state.position
-    state.record(points, start)
-    total = sum(len(leg) for leg in legs)
-    try:
-        for leg in legs:
-            state.slope = None
-            for distance in leg:
-                state.move_to(start + float(distance))
-                state.record(points, start)
-                watch((len(points.load) - 1) / total)
-        if unload:
-            state.slope = None
-            for load in state.load * np.linspace(1.0, 0.0, _UNLOADING_STEPS + 1)[1:]:
-                state.load_to(float(load))
-                state.record(points, start)
-    except NotConverged as error:
-        points.stopped = str(error)
-    return points, state
 
 
 class State:
@@ -188,6 +135,10 @@ class State:
     def load_to(self, target: float) -> None:
         """Step to the load factor ``target``, in smaller pieces where need be."""
         self._advance(self.load, target, np.zeros(self.frame.size), 1.0, "load factor", "")
+
+    def step_to(self, goal: float, normal: np.ndarray) -> bool:
+        """One step to the plane ``normal`` · d = ``goal``, predicted by `slope`; whether it found equilibrium."""
+        return self._step(goal, normal, 0.0)
 
     def _advance(self, position: float, target: float, c: np.ndarray, e: float, what: str, unit: str) -> None:
         share = 1.0

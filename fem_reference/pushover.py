@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from fem_reference.frame import Frame
 from fem_reference.frame_mesh import build_frame, control_vector
 from fem_reference.hinge_events import HingeEvent, hinge_events
+from fem_reference.judging import difference, energy_error, outcome, with_errors
 from fem_reference.legs import even_legs, resolved_legs, with_events
 from fem_reference.member_results import MemberErrors, MemberResult, member_results
-from fem_reference.paths import State, Trace, trace
+from fem_reference.paths import State, Trace
+from fem_reference.programme import trace
 from scene import Scene
 
 #: Points at which the load is quoted, on the path or, of one that turns, on each leg.
@@ -21,8 +23,6 @@ POINTS = 200
 POINTS_A_LEG = 100
 _COARSEST = (10, 24)
 _MOST_REFINEMENTS = 5
-#: A path is level when its last slope is below this share of its first.
-_LEVEL = 1e-4
 _KINEMATICS = {"small": "small displacements", "p-delta": "P–Δ", "large": "corotational large displacements"}
 _YIELDING = {"gradual": "fibre beam elements", "ideal-hinges": "beam elements with ideal hinges"}
 
@@ -131,17 +131,18 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
     """
     started = time.perf_counter()
     elements, fibres = _COARSEST
-    stops = scene.push.stops()
+    stops = scene.push.stops() if scene.push.control != "load" else (scene.push.largest_load,)
     legs = even_legs(stops, POINTS if len(stops) == 1 else POINTS_A_LEG)
     first = _solve(scene, elements, fibres, legs, watch)
-    legs = resolved_legs(stops, legs, np.array(first.trace.load))
-    if scene.yielding == "ideal-hinges" and len(legs) == 1:
+    if scene.push.control == "displacement":
+        legs = resolved_legs(stops, legs, np.array(first.trace.load))
+    if scene.yielding == "ideal-hinges" and len(legs) == 1 and scene.push.control == "displacement":
         legs = [with_events(legs[0], [hinge.displacement for hinge in first.hinges])]
     coarse = _solve(scene, elements, fibres, legs, watch)
     for _ in range(_MOST_REFINEMENTS):
         elements, fibres = 2 * elements, 2 * fibres
         fine = _solve(scene, elements, fibres, legs, watch)
-        error = max(_difference(fine.trace.load, coarse.trace.load), fine.trace.imbalance)
+        error = max(difference(scene, fine.trace, coarse.trace), fine.trace.imbalance)
         if error <= tolerance:
             break
         coarse, last = fine, coarse
@@ -163,13 +164,13 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
         elements=elements,
         fibres=fibres,
         seconds=time.perf_counter() - started,
-        hinges=_with_errors(fine.hinges, coarse.hinges, float(np.abs(path.load).max())),
-        outcome=path.stopped or _outcome(scene, path),
+        hinges=with_errors(fine.hinges, coarse.hinges, float(np.abs(path.load).max())),
+        outcome=path.stopped or outcome(scene, path),
         members=members,
         member_errors={name: member.differences(rough[name]) for name, member in members.items()},
         residual=path.displacement[-1],
         residual_error=abs(path.displacement[-1] - coarse.trace.displacement[-1]),
-        energy=Energy(external, elastic, plastic, _energy_error(path, coarse.trace)),
+        energy=Energy(external, elastic, plastic, energy_error(path, coarse.trace)),
         imbalance=path.imbalance,
     )
 
@@ -187,48 +188,5 @@ class _Solved:
 def _solve(scene: Scene, elements: int, fibres: int, legs: list[np.ndarray], watch: Callable[[float], None]) -> _Solved:
     frame = build_frame(scene, elements, fibres)
     control = control_vector(scene, frame.node_dofs, frame.size)
-    path, state = trace(frame, control, legs, scene.push.unload, watch)
+    path, state = trace(frame, control, scene.push, legs, watch)
     return _Solved(frame, path, state, hinge_events(frame, scene, path))
-
-
-def _difference(fine: list[float], coarse: list[float]) -> float:
-    """Largest difference over the largest value, along the part that both have; 1 when one has no more than a start."""
-    both = min(len(fine), len(coarse))
-    a, b = np.array(fine[:both]), np.array(coarse[:both])
-    return float(np.abs(a - b).max() / np.abs(a).max()) if both > 1 else 1.0
-
-
-def _energy_error(fine: Trace, coarse: Trace) -> float:
-    both = min(len(fine.load), len(coarse.load))
-    pairs = ((fine.external, coarse.external), (fine.elastic, coarse.elastic), (fine.plastic, coarse.plastic))
-    worst = max(float(np.abs(np.array(a[:both]) - np.array(b[:both])).max()) for a, b in pairs)
-    return worst / max(map(abs, fine.external))
-
-
-def _with_errors(fine: tuple[HingeEvent, ...], coarse: tuple[HingeEvent, ...], scale: float) -> tuple[HingeEvent, ...]:
-    """``fine`` with the differences of its loads from the nearest hinges of ``coarse``."""
-    judged = []
-    for found in fine:
-        event = found
-        same = [e for e in coarse if e.node == event.node and (e.node or e.member == event.member)]
-        near = min(same, key=lambda e: abs(e.position - event.position), default=None)
-        if near is not None:
-            load, moved = abs(near.load - event.load) / scale, abs(near.displacement - event.displacement)
-            event = replace(event, error_estimate=load, displacement_error=moved)
-        judged.append(event)
-    return tuple(judged)
-
-
-def _outcome(scene: Scene, path: Trace) -> str:
-    """What a path that ran to its end came to."""
-    load, displacement = np.array(path.load), np.array(path.displacement)
-    if len(scene.push.stops()) == 1 and not scene.push.unload:
-        peak = int(np.argmax(load))
-        slopes = np.diff(load) / np.diff(displacement)
-        if peak < len(load) - 1 and slopes[-1] < -_LEVEL * slopes[0]:
-            return (
-                f"limit point: the load is largest, {load[peak]:.6g}, at a displacement of {displacement[peak]:.6g} m"
-            )
-        if abs(slopes[-1]) <= _LEVEL * slopes[0]:
-            return f"mechanism: the load stays at {load[-1]:.6g}"
-    return "reached the end of its programme"

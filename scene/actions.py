@@ -62,6 +62,11 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         Displacements at which a cyclic push turns, the last of which is its end [m].
     unload : bool
         Go back to zero load at the end.
+    control : str
+        What leads along the path: ``"displacement"`` of the node; ``"load"``, up to ``largest_load``; or
+        ``"arc-length"``, which follows the path where both turn back, until the node has gone ``distance``.
+    largest_load : float
+        Load, or load factor, at which a push under load control ends; 0 otherwise.
     """
 
     node: str
@@ -69,6 +74,8 @@ class Push(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     distance: Length = si(0.0)
     turning_points: tuple[Length, ...] = ()
     unload: bool = False
+    control: Literal["displacement", "load", "arc-length"] = "displacement"
+    largest_load: float = 0.0
 
     def stops(self) -> tuple[float, ...]:
         """Displacements to which the node goes one after the other, from 0 [m]."""

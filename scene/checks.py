@@ -163,9 +163,14 @@ def _check_way(push: Push) -> None:
     if push.turning_points:
         if push.distance != 0.0:
             raise InputError("push.distance", "turning_points say it, too", "keep one of them")
+        if push.control != "displacement":
+            raise InputError("push.turning_points", f"{push.control} control knows none", "write distance instead")
         stops = (0.0, *push.turning_points)
         if any(a == b for a, b in itertools.pairwise(stops)):
             raise InputError("push.turning_points", "a turning point repeats the one before", "take it out")
+    elif push.control == "load":
+        if push.distance != 0.0 or push.largest_load <= 0.0:
+            raise InputError("push.largest_load", "load control goes to a load", "write largest_load, and no distance")
     elif push.distance <= 0.0:
         raise InputError("push.distance", "it must be greater than zero", 'write a length such as "75 mm"')
 

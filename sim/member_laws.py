@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from capacity import Capacity, FacetSurface, InputError, Interaction, Material
+from capacity import Capacity, FacetSurface, Interaction, Material
 from scene import Member, Scene
 from sim.laws import ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic
 from sim.model import Model
@@ -23,18 +23,12 @@ class MemberLaws:
     ------
     ValueError
         When ``model`` names an unknown law.
-    InputError
-        When a member's material is a table of stresses, which no law follows.
     """
 
     def __init__(self, scene: Scene, model: Model) -> None:
         for law in {model.of(name).law for name in scene.members}:
             if law not in LAWS:
                 raise ValueError(f'there is no joint law "{law}"; the laws are {", ".join(LAWS)}')
-        for name, member in scene.members.items():
-            if member.material.curve is not None:
-                cure = 'give the slope beyond yield instead, for example "Et=2 GPa"; `ductile reference` follows tables'
-                raise InputError(f"members.{name}.material", "joints do not follow a table of stresses", cure)
         self._scene, self._model = scene, model
         self._surfaces: dict[tuple[str, Material], FacetSurface] = {}
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import pymunk
 
-from capacity import InputError
 from scene import MemberEnd, Node, Scene
 from sim.body_loads import BodyLoad, body_loads
+from sim.followed import check_followed
 from sim.joint import DuctileJoint, Limits
 from sim.laws import ElasticPlastic
 from sim.member_laws import MemberLaws
@@ -108,8 +108,9 @@ def assemble(
     ValueError
         When ``model`` names an unknown rule or law, or too few joints.
     InputError
-        When its hinges are too long for a member.
+        When its hinges are too long for a member, or the scene has what joints do not follow.
     """
+    check_followed(scene)
     laws = MemberLaws(scene, model)
     rules = {name: _rule(scene, name, model.of(name)) for name in scene.members}
     if space is None:
@@ -221,9 +222,6 @@ class _Builder:
             # A support that settles pulls its node along: its spring is as long as the settlement at first.
             joint.geometry[0] += node.settlement[0]
             joint.geometry[1] += node.settlement[1]
-        if node.bearing:
-            cure = "give it a support or a spring, or follow it with `ductile reference`"
-            raise InputError(f"nodes.{name}.bearing", "joints have no support that only pushes", cure)
         if node.spring is not None:
             x, y, rotation = map(float, node.spring)
             self._to_ground(node, body, (x, y, rotation))

@@ -9,13 +9,13 @@ from cantilevers import SECTIONS, cantilever, reference_cantilever
 
 from fem_reference import NotConverged, pushover
 from fem_reference.frame_mesh import build_frame
-from fem_reference.paths import trace
+from fem_reference.programme import trace
 from scene import Scene
 
 
 def loads(scene: Scene, elements: int, fibres: int, distances: np.ndarray) -> np.ndarray:
     frame = build_frame(scene, elements, fibres)
-    path, _ = trace(frame, frame.pattern, [distances])
+    path, _ = trace(frame, frame.pattern, scene.push, [distances])
     assert path.imbalance <= 1e-5
     assert not path.stopped
     return np.array(path.load[1:])

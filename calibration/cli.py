@@ -10,6 +10,7 @@ from rich.console import Console
 
 from calibration.commands.calibrate import calibrate
 from calibration.commands.capacity import capacity
+from calibration.commands.export import export
 from calibration.commands.reference import reference
 from calibration.commands.scenes import scenes
 from calibration.commands.simulate import simulate
@@ -22,7 +23,7 @@ app = App(
     version_flags=["--version"],
     result_action="return_value",
 )
-for command in (capacity, scenes, reference, simulate, calibrate, study):
+for command in (capacity, scenes, reference, simulate, calibrate, study, export):
     app.command(command)
 
 

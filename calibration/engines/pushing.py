@@ -13,9 +13,14 @@ import numpy as np
 from calibration.engines.handover import Handover, PieceLoad, PushPoint
 from fem_reference import Pushover
 
-#: How long a push takes in simulated seconds, and how long a scene may settle under its dead loads before.
+#: How long a push takes in simulated seconds, …
 DURATION = 4.0
+#: … how many steps at most a pusher waits for a pattern of loads to follow, until it bears less than a share of it, …
+_WAIT, _BORNE = 12, 0.003
+#: … and how long a scene may settle under its dead loads before.
 SETTLING = 2.0
+# Share of the time in which the pusher gathers speed.
+_EASE = 0.1
 #: Faster than this many times the pushed way in a second, a body has left the ground of facts.
 _RUNAWAY = 1e6
 #: Share of the pusher's force by which the pattern is corrected in each step.
@@ -89,28 +94,30 @@ def push_rig(rig: Rig, handover: Handover, push: PushPoint, distances: np.ndarra
     rig.hold()
     origin = _along(rig, push)
     steps = round(DURATION / dt)
-    progress = np.linspace(0.0, len(distances) - 1.0, steps + 1)
+    time_share = np.linspace(0.0, 1.0, steps + 1)
+    eased = np.where(time_share < _EASE, time_share**2 / (2.0 * _EASE), time_share - 0.5 * _EASE)
+    progress = eased / eased[-1] * (len(distances) - 1.0)
     travel = np.interp(progress, np.arange(len(distances)), distances)
     far = _RUNAWAY * float(np.abs(distances).max())
     size = math.hypot(*(part for load in handover.pattern for part in (*load.force, load.moment)))
-    factor = 0.0
+    factor, taken, seconds = 0.0, 0, 0.0
     displacement, load = np.zeros(steps + 1), np.zeros(steps + 1)
-    seconds = 0.0
     for k in range(1, steps + 1):
-        _apply(rig, handover.dead_loads, 1.0)
-        _apply(rig, handover.pattern, factor)
-        started = time.thread_time()
-        force = rig.step(float(travel[k]))
-        seconds += time.thread_time() - started
-        displacement[k] = _along(rig, push) - origin
-        if handover.pattern:
-            load[k] = factor
+        for _ in range(_WAIT if handover.pattern else 1):
+            _apply(rig, handover.dead_loads, 1.0)
+            _apply(rig, handover.pattern, factor)
+            started = time.thread_time()
+            force = rig.step(float(travel[k]))
+            seconds += time.thread_time() - started
+            taken += 1
+            if not handover.pattern or abs(force) <= _BORNE * abs(factor) * size:
+                break
             factor += _GAIN * force / size
-        else:
-            load[k] = force
+        displacement[k] = _along(rig, push) - origin
+        load[k] = factor if handover.pattern else force
         if not (math.isfinite(displacement[k]) and abs(displacement[k]) < far):
             raise Unstable(f"the pushed node was at {displacement[k]:.3g} m after {k} steps")
-    return Pushed(displacement, load, progress, seconds, steps * dt, steps)
+    return Pushed(displacement, load, progress, seconds, taken * dt, taken)
 
 
 def _apply(rig: Rig, loads: Sequence[PieceLoad], share: float) -> None:

@@ -21,6 +21,7 @@ def module_text(handover: Handover, turn: Turn, notes: str) -> str:
     """A Python module that builds the scene from stock constraints."""
     return render(
         "pymunk.py.j2",
+        infinite="math.inf",
         scene=handover.name,
         notes=notes,
         spring=turn == "spring",

@@ -5,12 +5,12 @@ from sim import chipmunk
 chipmunk.verify()
 
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits  # noqa: E402  (nothing may run on structs that do not fit)
-from sim.laws import ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic  # noqa: E402
+from sim.laws import Bearing, ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic  # noqa: E402
 from sim.member_laws import LAWS  # noqa: E402
 from sim.members import Assembly, JointPlace, assemble  # noqa: E402
 from sim.model import MemberModel, Model  # noqa: E402
 from sim.modes import natural_modes  # noqa: E402
-from sim.motion import Course, follow  # noqa: E402
+from sim.motion import Course, follow, set_going  # noqa: E402
 from sim.pushover import Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
 from sim.rules import RULES, Rule, equal, lobatto, radau  # noqa: E402
@@ -22,6 +22,7 @@ __all__ = [
     "LAWS",
     "RULES",
     "Assembly",
+    "Bearing",
     "Course",
     "DuctileJoint",
     "ElasticPlastic",
@@ -46,4 +47,5 @@ __all__ = [
     "natural_modes",
     "push_over",
     "radau",
+    "set_going",
 ]

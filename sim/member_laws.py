@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from capacity import Capacity, FacetSurface, Interaction, Material
+from capacity import Capacity, FacetSurface, Interaction
 from scene import Member, Scene
 from sim.laws import ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic
 from sim.model import Model
@@ -30,7 +30,7 @@ class MemberLaws:
             if law not in LAWS:
                 raise ValueError(f'there is no joint law "{law}"; the laws are {", ".join(LAWS)}')
         self._scene, self._model = scene, model
-        self._surfaces: dict[tuple[str, Material], FacetSurface] = {}
+        self._surfaces: dict[tuple[str, str], FacetSurface] = {}
 
     def joint(self, name: str, length: float, *, pinned: bool = False, elastic: bool = False) -> Law:
         """Law of a joint that stands for ``length`` [m] of the member ``name``.
@@ -54,17 +54,8 @@ class MemberLaws:
             case "interaction":
                 return InteractionPlastic(stiffness, self._surface(member))
             case _:
-                fibres, material = member.section.fibres(model.fibres), member.material
-                return FibreSection(
-                    length=length,
-                    y=fibres.y,
-                    area=fibres.area,
-                    youngs_modulus=material.youngs_modulus,
-                    yield_stress=material.yield_stress,
-                    tangent_modulus=material.tangent_modulus,
-                    shear_stiffness=stiffness[1],
-                    shear_capacity=c.Q_max,
-                )
+                section, criterion = member.section, self._scene.criterion
+                return FibreSection.of_section(section, member.material, length, model.fibres, criterion, stiffness[1])
 
     def _stiffness(self, name: str, c: Capacity, length: float) -> tuple[float, float, float]:
         shear = c.GA_s
@@ -74,7 +65,7 @@ class MemberLaws:
 
     def _surface(self, member: Member) -> FacetSurface:
         """Members of one section and material share a surface, which takes some hundredths of a second to cut."""
-        key = (member.section.name, member.material)
+        key = (member.section.name, member.material.name)
         if key not in self._surfaces:
             exact = Interaction(member.section, member.material, self._scene.criterion)
             self._surfaces[key] = exact.facets()

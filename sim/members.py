@@ -13,7 +13,7 @@ from scene import MemberEnd, Node, Scene
 from sim.body_loads import BodyLoad, body_loads
 from sim.followed import check_followed
 from sim.joint import DuctileJoint, Limits
-from sim.laws import ElasticPlastic
+from sim.laws import Bearing, ElasticPlastic
 from sim.member_laws import MemberLaws
 from sim.model import MemberModel, Model
 from sim.pieces import NodePoint, Piece, Pieces, Span
@@ -222,6 +222,10 @@ class _Builder:
             # A support that settles pulls its node along: its spring is as long as the settlement at first.
             joint.geometry[0] += node.settlement[0]
             joint.geometry[1] += node.settlement[1]
+        if node.bearing:
+            law = Bearing(float(node.bearing))
+            upwards = 0.5 * math.pi
+            self._add(DuctileJoint(self.ground, body, node.at, law, direction=upwards, scheme=self.model.scheme))
         if node.spring is not None:
             x, y, rotation = map(float, node.spring)
             self._to_ground(node, body, (x, y, rotation))

@@ -120,7 +120,7 @@ class Pieces:
     def _needs_body(self, name: str) -> bool:
         node = self.scene.nodes[name]
         plain = node.support in ("free", "clamped", "pinned") and node.spring is None and node.mass == 0.0
-        return len(self.meeting[name]) > 1 or not plain or node.settlement != (0.0, 0.0)
+        return len(self.meeting[name]) > 1 or not plain or node.settlement != (0.0, 0.0) or node.bearing > 0.0
 
     def _first_bit(self, member: str, node: str) -> tuple[float, float, float, float]:
         """What of ``member`` belongs to its ``node``: its length, the member's direction, and which way it goes on."""

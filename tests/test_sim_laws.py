@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
-from capacity import Interaction, capacity, parse_material, parse_section
+from capacity import InputError, Interaction, capacity, parse_material, parse_section
 from sim import ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic
 from sim.laws import elastic_plastic, fibre, interaction
 
@@ -31,10 +31,11 @@ def capped() -> ElasticPlastic:
 
 
 def fibres(hardening: float = 0.0, count: int = 12) -> FibreSection:
-    f, e = SECTION.fibres(count), MATERIAL.youngs_modulus
-    return FibreSection(
-        LENGTH, f.y, f.area, e, MATERIAL.yield_stress, hardening * e, CAPACITY.GA_s / LENGTH, CAPACITY.Q_max
-    )
+    return FibreSection.of_section(SECTION, parse_material(f"S235, Et={210.0 * hardening!r} GPa"), LENGTH, count)
+
+
+#: Steel whose slope falls three times, as layers in parallel.
+CURVED = parse_material("curve=0.001:210 0.004:260 0.02:330 MPa")
 
 
 @functools.cache
@@ -62,7 +63,8 @@ class Point:
 
 
 ELASTIC = [capped(), fibres(), fibres(0.02), interacting()]
-LAWS = [*ELASTIC, RigidPlastic.of_section(CAPACITY), interacting(FLANGED, 24)]
+LAYERED = FibreSection.of_section(SECTION, CURVED, LENGTH, 12)
+LAWS = [*ELASTIC, RigidPlastic.of_section(CAPACITY), interacting(FLANGED, 24), LAYERED]
 deformations = st.tuples(st.floats(-5e-4, 5e-4), st.floats(-5e-4, 5e-4), st.floats(-0.05, 0.05)).map(np.array)
 
 
@@ -266,3 +268,20 @@ def test_a_rigid_plastic_joint_shows_nothing_until_it_yields() -> None:
     assert RigidPlastic((np.inf, 1e5, 0.0)).stiffness == pytest.approx((1e10, 1e10, 0.0))
     with pytest.raises(ValueError, match="finite and positive"):
         RigidPlastic((np.inf, np.inf, 0.0))
+
+
+def test_a_table_of_stresses_is_followed_on_first_loading_and_back() -> None:
+    """Layers in parallel: the curve itself, then Masing's rule, twice the curve from the turn."""
+    point, curve = Point(LAYERED), CURVED.stress_strain
+    for strain in np.linspace(0.0, 0.015, 40):
+        force, _ = point.respond(np.array([strain * LENGTH, 0.0, 0.0]))
+        assert force[0] / SECTION.area == pytest.approx(float(curve.stress(strain)), rel=1e-9, abs=1e-3)
+    point.commit(np.array([0.015 * LENGTH, 0.0, 0.0]))
+    top = float(curve.stress(0.015))
+    for back in np.linspace(0.0, 0.02, 40):
+        force, _ = point.respond(np.array([(0.015 - back) * LENGTH, 0.0, 0.0]))
+        expected = top - 2.0 * float(curve.stress(0.5 * back))
+        assert force[0] / SECTION.area == pytest.approx(expected, rel=1e-9, abs=1e-3)
+    steeper = parse_material("curve=0.001:210 0.004:220 0.01:330 MPa")
+    with pytest.raises(InputError, match="grows steeper"):
+        FibreSection.of_section(SECTION, steeper, LENGTH)

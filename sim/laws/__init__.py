@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from sim.laws.bearing import Bearing
 from sim.laws.elastic_plastic import ElasticPlastic
 from sim.laws.fibre import FibreSection
 from sim.laws.interaction import InteractionPlastic
@@ -42,4 +43,4 @@ class Law(Protocol):
         """Upper triangle of ∂s/∂q while elastic, row by row; no tangent of the law may exceed it."""
 
 
-__all__ = ["ElasticPlastic", "FibreSection", "InteractionPlastic", "Law", "RigidPlastic"]
+__all__ = ["Bearing", "ElasticPlastic", "FibreSection", "InteractionPlastic", "Law", "RigidPlastic"]

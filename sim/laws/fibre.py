@@ -1,18 +1,26 @@
 """Fibre-section joint: N and M from elastic–plastic fibres over a length ℓ, shear capped by itself.
 
 A fibre at height y has strain ε = (u - y θ) / ℓ and follows bilinear kinematic hardening with plastic modulus
-H = E E_t / (E - E_t), so N–M interaction, gradual yielding and the Bauschinger effect come by themselves.
+H = E E_t / (E - E_t), so N–M interaction, gradual yielding and the Bauschinger effect come by themselves. Where a
+stress–strain curve has more pieces, several fibres lie at one height, elastic–perfectly plastic ones in parallel
+(J. F. Besseling, A theory of elastic, plastic and creep deformations, J. Appl. Mech. 25 (1958) 529–536).
 
 Parameters in memory: ℓ, k_Q, Q_max, number of fibres f; then y, A, E, fy, H of each fibre, one list after another.
 State: plastic slip, then the plastic strain of each fibre.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
 from numba import cfunc
 
+from capacity import InputError, Material, Section, capacity
 from sim.memory import LAW_SIGNATURE, floats
+
+# Yield stress of a layer that does not yield [Pa].
+_NEVER = 1e30
 
 
 @cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
@@ -86,7 +94,7 @@ def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True)
 class FibreSection:
-    """The law above.
+    """The law above; `of_section` makes one.
 
     Parameters
     ----------
@@ -94,42 +102,66 @@ class FibreSection:
         Length ℓ over which the section's strains are constant [m].
     y, area : (f,) float
         Fibre heights [m] and areas [m²].
-    youngs_modulus, yield_stress, tangent_modulus : float
-        E, fy, E_t [Pa].
-    shear_stiffness, shear_capacity : float
-        k_Q [N/m] and Q_max [N].
+    youngs_modulus, yield_stress, tangent_modulus : (f,) float
+        E, fy, E_t [Pa] of each.
+    shear_stiffness : float
+        k_Q [N/m].
+    capacity : (float, float, float)
+        N_max [N], Q_max [N], M_max [N m], each alone; only Q_max bounds anything, the others are what is called full.
     """
 
     length: float
     y: np.ndarray
     area: np.ndarray
-    youngs_modulus: float
-    yield_stress: float
-    tangent_modulus: float
+    youngs_modulus: np.ndarray
+    yield_stress: np.ndarray
+    tangent_modulus: np.ndarray
     shear_stiffness: float
-    shear_capacity: float
+    capacity: tuple[float, float, float]
 
     name = "fibre"
     yields_by = ("fibres", "Q", "fibres")
     respond_address = respond.address
     commit_address = commit.address
 
+    @classmethod
+    def of_section(
+        cls,
+        section: Section,
+        material: Material,
+        length: float,
+        fibres: int = 16,
+        criterion: str = "von-mises",
+        shear_stiffness: float | None = None,
+    ) -> FibreSection:
+        """A joint that stands for ``length`` [m] of a member, its section cut into ``fibres``, at least 4.
+
+        Raises
+        ------
+        InputError
+            When a stress–strain curve grows steeper somewhere, which says nothing about unloading.
+        ValueError
+            For fewer than 4 fibres.
+        """
+        rows = [
+            (cut.y, cut.area, *(np.full(len(cut.y), value) for value in layer))
+            for own, cut in section.fibres_by_material(fibres, material)
+            for layer in _layers(own)
+        ]
+        c = capacity(section, material, criterion)
+        stiffness = c.GA_s / length if shear_stiffness is None else shear_stiffness
+        y, area, e, fy, et = (np.concatenate(column) for column in zip(*rows, strict=True))
+        return cls(length, y, area, e, fy, et, stiffness, (c.N_max, c.Q_max, c.M_max))
+
     def capacities(self) -> tuple[float, float, float]:
-        """N_max [N], Q_max [N] and M_max [N m], each when it acts alone, at first full yield."""
-        order = np.argsort(self.y)
-        # The plastic centroid: the fibre at which half of the area is passed, or between two.
-        passed = np.cumsum(self.area[order])
-        middle = float(np.interp(0.5 * passed[-1], passed - 0.5 * self.area[order], self.y[order]))
-        moment = self.yield_stress * float(self.area @ np.abs(self.y - middle))
-        return self.yield_stress * float(self.area.sum()), self.shear_capacity, moment
+        """N_max [N], Q_max [N] and M_max [N m], each when it acts alone."""
+        return self.capacity
 
     def parameters(self) -> np.ndarray:
         """Parameters as they lie in memory."""
-        n = len(self.y)
         e, et = self.youngs_modulus, self.tangent_modulus
-        head = [self.length, self.shear_stiffness, self.shear_capacity, float(n)]
-        same = [np.full(n, e), np.full(n, self.yield_stress), np.full(n, e * et / (e - et))]
-        return np.concatenate([head, self.y, self.area, *same])
+        head = [self.length, self.shear_stiffness, self.capacity[1], float(len(self.y))]
+        return np.concatenate([head, self.y, self.area, e, self.yield_stress, e * et / (e - et)])
 
     def state(self) -> np.ndarray:
         """State of a new joint as it lies in memory."""
@@ -137,6 +169,22 @@ class FibreSection:
 
     def elastic_tangent(self) -> tuple[float, float, float, float, float, float]:
         """Upper triangle of ∂s/∂q while elastic, row by row."""
-        scale = self.youngs_modulus / self.length
-        ea, es, ei = self.area.sum(), -(self.area * self.y).sum(), (self.area * self.y**2).sum()
-        return scale * ea, 0.0, scale * es, self.shear_stiffness, 0.0, scale * ei
+        stiffness = self.youngs_modulus * self.area / self.length
+        ea, es, ei = stiffness.sum(), -(stiffness * self.y).sum(), (stiffness * self.y**2).sum()
+        return ea, 0.0, es, self.shear_stiffness, 0.0, ei
+
+
+def _layers(material: Material) -> list[tuple[float, float, float]]:
+    """E, fy and E_t of the elements in parallel that a material is made of [Pa]."""
+    curve = material.curve
+    if curve is None:
+        return [(material.youngs_modulus, material.yield_stress, material.tangent_modulus)]
+    if not curve.unloads:
+        fault = "its stress–strain curve grows steeper somewhere, which says nothing about unloading"
+        raise InputError("material", fault, "use a curve whose slope only falls")
+    layers = [
+        (float(e), float(e * strain), 0.0) for e, strain in zip(curve.drops, curve.breaks, strict=True) if e > 0.0
+    ]
+    if curve.slopes[-1] > 0.0:
+        layers.append((float(curve.slopes[-1]), _NEVER, 0.0))
+    return layers

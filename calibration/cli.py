@@ -10,6 +10,7 @@ from rich.console import Console
 
 from calibration.commands.calibrate import calibrate
 from calibration.commands.capacity import capacity
+from calibration.commands.compare import compare
 from calibration.commands.export import export
 from calibration.commands.reference import reference
 from calibration.commands.scenes import scenes
@@ -23,7 +24,7 @@ app = App(
     version_flags=["--version"],
     result_action="return_value",
 )
-for command in (capacity, scenes, reference, simulate, calibrate, study, export):
+for command in (capacity, scenes, reference, simulate, calibrate, compare, study, export):
     app.command(command)
 
 

@@ -19,9 +19,10 @@ from capacity import parse_material
 from fem_reference.plane.beam_mesh import beam_mesh, tensor_mesh
 from fem_reference.plane.boundary import boundary
 from fem_reference.plane.continuum import Continuum
+from fem_reference.plane.equilibrium import Body
 from fem_reference.plane.j2 import J2
 from fem_reference.plane.mesh import PlaneMesh
-from fem_reference.plane.path import Body, trace
+from fem_reference.plane.path import trace
 
 LENGTH, DEPTH, THICKNESS = 0.5, 0.1, 0.001
 ACROSS, ALONG, INCREMENTS, FARTHEST = 8, 40, 50, 0.0149206349

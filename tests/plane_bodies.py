@@ -8,9 +8,9 @@ from capacity import Material, parse_material
 from fem_reference.plane.beam_mesh import tensor_mesh
 from fem_reference.plane.boundary import boundary
 from fem_reference.plane.continuum import Continuum
+from fem_reference.plane.equilibrium import Body
 from fem_reference.plane.j2 import J2, Hardening
 from fem_reference.plane.mesh import PlaneMesh
-from fem_reference.plane.path import Body
 
 STEEL = parse_material("fy=235 MPa, E=210 GPa, rho=7850 kg/m^3")
 #: Two triangles of 6 nodes in a quadrilateral of 9.

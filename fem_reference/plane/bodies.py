@@ -13,9 +13,9 @@ from capacity import InputError
 from fem_reference.plane.beam_mesh import beam_mesh
 from fem_reference.plane.boundary import boundary, edge_weights
 from fem_reference.plane.continuum import Continuum
+from fem_reference.plane.equilibrium import Body
 from fem_reference.plane.j2 import J2
 from fem_reference.plane.mesh_file import body_from_mesh
-from fem_reference.plane.path import Body
 from scene import Plane, Scene
 
 #: Meshes of a member that are worth their time, and elements of a refined mesh from a file that are.

@@ -43,8 +43,8 @@ class Boundary:
         Held means.
     control : int
         The pushed edge's degree of freedom.
-    position : (size, 2) float
-        Where each degree of freedom is [m].
+    position, directions : (size, 2) float
+        Where each degree of freedom is [m], and along which unit vector.
     """
 
     dofs: np.ndarray
@@ -53,6 +53,7 @@ class Boundary:
     rows: np.ndarray
     control: int
     position: np.ndarray
+    directions: np.ndarray
 
 
 def boundary(
@@ -98,6 +99,7 @@ def boundary(
         np.array(rows).reshape(len(rows), len(used)),
         int(dofs[grip[0], 1]),
         np.repeat(mesh.points, 2, axis=0)[used],
+        axes.reshape(-1, 2)[used],
     )
     _check_held(found, mesh, grip, place)
     return found

@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
-import csv
 import io
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table
 
+from calibration import motion_answer
+from calibration.csv_text import csv_text
 from calibration.result_cache import content_key, keep, recall
 from capacity import InputError
-from fem_reference import PlanePush, Pushover, field_files, push_over, remarks
+from fem_reference import (
+    MemberErrors,
+    PlanePush,
+    Pushover,
+    field_files,
+    motion,
+    push_field_files,
+    push_over,
+    remarks,
+)
 from scene import Scene
 
 _ROWS = 11
@@ -23,15 +34,18 @@ _ROWS = 11
 def answer(scene: Scene, tolerance: float, use_cache: bool, watch: Callable[[float], None]) -> dict[str, Any]:
     """The reference's answer to ``scene`` as one object, kept on disk or fresh; SI.
 
-    Its "fields" are texts of files by name; none of beams.
+    Its "fields" are texts of files by name.
     """
-    if scene.pushed is None:
-        raise InputError("motion", "this command follows pushes only", "add [push] in place of [motion]")
+    if scene.pushed is None and scene.motion is None:
+        raise InputError("push", "the reference follows pushes and motions", "add [push] or [motion]")
     key = content_key(scene, tolerance)
     kept = recall(key) if use_cache else None
     if kept is not None:
         return {**kept, "cached": True}
-    found = as_object(push_over(scene, tolerance, watch), scene)
+    if scene.motion is not None:
+        found = motion_answer.as_object(motion(scene, tolerance, watch=watch), scene)
+    else:
+        found = as_object(push_over(scene, tolerance, watch), scene)
     if use_cache:
         keep(key, found)
     return {**found, "cached": False}
@@ -50,6 +64,7 @@ def as_object(result: Pushover | PlanePush, scene: Scene) -> dict[str, Any]:
                 "load": hinge.load,
                 "displacement": hinge.displacement,
                 "error_estimate": hinge.error_estimate,
+                "displacement_error": hinge.displacement_error,
             }
             for hinge in result.hinges
         ],
@@ -69,7 +84,9 @@ def as_object(result: Pushover | PlanePush, scene: Scene) -> dict[str, Any]:
             "plastic": result.energy.plastic.tolist(),
             "error_estimate": result.energy.error_estimate,
         },
-        "fields": field_files(result.fields) if isinstance(result, PlanePush) else {},
+        "fields": field_files(result.fields)
+        if isinstance(result, PlanePush)
+        else push_field_files(scene, result.members, result.displacement),
         "members": {
             name: {
                 "end_forces": member.end_forces[-1].tolist(),
@@ -80,36 +97,50 @@ def as_object(result: Pushover | PlanePush, scene: Scene) -> dict[str, Any]:
                 "moment": member.moment.tolist(),
                 "curvature": member.curvature.tolist(),
                 "plastic_strain": member.plastic_strain.tolist(),
+                "error_estimate": _listed(result.member_errors[name]),
             }
-            for name, member in ({} if isinstance(result, PlanePush) else result.members).items()
-        },
+            for name, member in result.members.items()
+        }
+        if isinstance(result, Pushover)
+        else {},
     }
+
+
+def _listed(errors: MemberErrors) -> dict[str, Any]:
+    return {name: np.asarray(value).tolist() for name, value in vars(errors).items()}
 
 
 def files(found: dict[str, Any], title: str) -> dict[str, str]:
     """Text files of an answer by name."""
+    if "time" in found:
+        return motion_answer.files(found, title)
     energy = found["energy"]
-    columns = [found["displacement"], found["load"], energy["external"], energy["elastic"], energy["plastic"]]
+    curve = [found["displacement"], found["load"], energy["external"], energy["elastic"], energy["plastic"]]
     head = ["displacement_m", "load", "external_J", "elastic_J", "plastic_J"]
     hinges = [list(hinge.values()) for hinge in found["hinges"]]
-    hinge_head = ["node", "member", "position_m", "load", "displacement_m", "error_estimate"]
+    hinge_head = ["node", "member", "position_m", "load", "displacement_m", "error_estimate", "displacement_error_m"]
     sections: list[list[Any]] = []
     for name, member in found["members"].items():
-        keys = ("station", "axial_force", "moment", "curvature", "plastic_strain")
-        sections += [[name, *row] for row in zip(*(member[key] for key in keys), strict=True)]
+        keys = ("axial_force", "moment", "curvature", "plastic_strain")
+        columns = [member["station"], *(member[key] for key in keys), *(member["error_estimate"][key] for key in keys)]
+        sections += [[name, *row] for row in zip(*columns, strict=True)]
     section_head = ["member", "station_m", "N_N", "M_Nm", "curvature_1_per_m", "plastic_strain"]
+    section_head += [f"{name}_error" for name in section_head[2:]]
     texts = {
-        "reference.csv": _csv(head, zip(*columns, strict=True)),
-        "hinges.csv": _csv(hinge_head, hinges),
+        "reference.csv": csv_text(head, zip(*curve, strict=True)),
+        "hinges.csv": csv_text(hinge_head, hinges),
         "reference.svg": _svg(found, title),
     }
     if sections:
-        texts["sections.csv"] = _csv(section_head, sections)
+        texts["sections.csv"] = csv_text(section_head, sections)
     return {**texts, **found["fields"]}
 
 
 def print_answer(found: dict[str, Any], console: Console) -> None:
     """Curve, hinges, energies and error estimates as tables."""
+    if "time" in found:
+        motion_answer.print_answer(found, console)
+        return
     console.print(found["method"])
     share = 100.0 * found["error_estimate"]
     largest = max(map(abs, found["load"]))
@@ -139,14 +170,6 @@ def print_answer(found: dict[str, Any], console: Console) -> None:
     console.print(f"Out of balance: {found['imbalance']:.1e} of all loads. End: {found['outcome']}.")
     for remark in found["remarks"]:
         console.print(f"Mind: {remark}.")
-
-
-def _csv(head: list[str], rows: Iterable[Iterable[Any]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(rows)
-    return text.getvalue()
 
 
 def _svg(found: dict[str, Any], title: str) -> str:

@@ -1,8 +1,9 @@
 """What the continuum does: elastic–plastic frames and plane stress on scikit-fem, each with an error estimate."""
 
+from fem_reference.beam_fields import motion_field_files, push_field_files
 from fem_reference.dynamics import MotionResult, motion
 from fem_reference.hinge_events import HingeEvent
-from fem_reference.member_results import MemberErrors, MemberResult
+from fem_reference.member_results import MemberErrors, MemberPath, MemberResult
 from fem_reference.modes import Modes, natural_modes
 from fem_reference.paths import NotConverged
 from fem_reference.plane import Fields, PlanePush, field_files, plane_push
@@ -15,6 +16,7 @@ __all__ = [
     "Fields",
     "HingeEvent",
     "MemberErrors",
+    "MemberPath",
     "MemberResult",
     "Modes",
     "MotionResult",
@@ -24,8 +26,10 @@ __all__ = [
     "default_tolerance",
     "field_files",
     "motion",
+    "motion_field_files",
     "natural_modes",
     "plane_push",
+    "push_field_files",
     "push_over",
     "pushover",
     "remarks",

@@ -6,6 +6,7 @@ shrink, and stays on it. A support stops what it holds in an instant; a bearing 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,13 +15,18 @@ import numpy as np
 from capacity import InputError
 from fem_reference.frame import Frame
 from fem_reference.frame_mesh import build_frame
+from fem_reference.member_results import MemberResult, member_results
 from fem_reference.modes import Masses, masses
-from fem_reference.paths import State
+from fem_reference.paths import State, Trace
 from fem_reference.stepper import Stepper
 from scene import Motion, Scene
 from scene.actions import unit_vector
 
+#: Estimated error that is aimed at when nothing else is said.
+TOLERANCE = 0.01
 _COARSEST = (10, 24, 250)
+#: Times at which whole members are kept.
+_STATES = 26
 _MOST_FIBRES = 48
 _MOST_REFINEMENTS = 4
 
@@ -43,6 +49,11 @@ class MotionResult:
         Of that node along the watched direction [m].
     displacements : dict[str, (k, 2) float]
         Displacements x, y of every node since the start [m].
+    members : dict[str, MemberResult]
+        Forces, strains and shapes at the times ``member_time``; the end forces are without the inertia of the last
+        element.
+    member_time : (j,) float
+        [s]
     kinetic, elastic, plastic, external : (k,) float
         Energies of motion and stored, plastic work, and work of the loads since the start [J].
     peak, peak_time : float
@@ -60,6 +71,8 @@ class MotionResult:
         Largest error of the watched displacement at any time, over the peak [-].
     elements, fibres, steps : int
         Of the finest model.
+    seconds : float
+        Time that all models took.
     """
 
     method: str
@@ -67,6 +80,8 @@ class MotionResult:
     time: np.ndarray
     displacement: np.ndarray
     displacements: dict[str, np.ndarray]
+    members: dict[str, MemberResult]
+    member_time: np.ndarray
     kinetic: np.ndarray
     elastic: np.ndarray
     plastic: np.ndarray
@@ -81,10 +96,14 @@ class MotionResult:
     elements: int
     fibres: int
     steps: int
+    seconds: float
 
 
 def motion(
-    scene: Scene, tolerance: float = 0.01, dissipation: float = 0.8, watch: Callable[[float], None] = lambda share: None
+    scene: Scene,
+    tolerance: float = TOLERANCE,
+    dissipation: float = 0.8,
+    watch: Callable[[float], None] = lambda share: None,
 ) -> MotionResult:
     """Follow ``scene``'s motion with finer models and steps until the estimated error is at most ``tolerance``.
 
@@ -114,6 +133,7 @@ def motion(
         raise InputError("motion", "the scene has none", 'add [motion] with duration = "0.2 s"')
     if not 0.0 <= dissipation <= 1.0:
         raise InputError("dissipation", f"{dissipation:g} is not between 0 and 1", "0.8 is ordinary")
+    started = time.perf_counter()
     asked = scene.motion
     elements, fibres, steps = _COARSEST
     for _ in range(_MOST_REFINEMENTS):
@@ -145,6 +165,8 @@ def motion(
         time=np.linspace(0.0, asked.duration, steps + 1),
         displacement=path,
         displacements=fine.moved,
+        members=fine.members,
+        member_time=np.linspace(0.0, asked.duration, _STATES),
         kinetic=kinetic,
         elastic=elastic,
         plastic=plastic,
@@ -159,6 +181,7 @@ def motion(
         elements=elements,
         fibres=fibres,
         steps=steps,
+        seconds=time.perf_counter() - started,
     )
 
 
@@ -175,6 +198,7 @@ class _Followed:
     moved: dict[str, np.ndarray]
     energies: np.ndarray
     rest: dict[str, tuple[float, float]]
+    members: dict[str, MemberResult]
 
 
 def _follow(
@@ -200,17 +224,26 @@ def _follow(
     moved = {name: np.zeros((steps + 1, 2)) for name in scene.nodes}
     energies = np.zeros((steps + 1, 4))
     energies[0] = stepper.energies()
+    states = Trace()
+    state.record(states, 0.0)
     for k in range(steps):
         stepper.advance(step)
         for name, dofs in frame.node_dofs.items():
             moved[name][k + 1] = (state.displacement - start)[dofs[:2]]
         energies[k + 1] = stepper.energies()
+        if (k + 1) * (_STATES - 1) % steps < _STATES - 1:
+            state.record(states, 0.0)
         watch((k + 1) / steps)
     energies[:, 3] -= energies[0, 3]
     if frame.bearings.any() or frame.springs.any() or any(any(node.held) for node in scene.nodes.values()):
         stepper.come_to_rest(step)
     rest = {name: (state.displacement - start)[dofs[:2]] for name, dofs in frame.node_dofs.items()}
-    return _Followed(moved, energies, {name: (float(x), float(y)) for name, (x, y) in rest.items()})
+    return _Followed(
+        moved,
+        energies,
+        {name: (float(x), float(y)) for name, (x, y) in rest.items()},
+        member_results(scene, frame, states),
+    )
 
 
 def _velocity(scene: Scene, asked: Motion, frame: Frame, mass: Masses) -> np.ndarray:

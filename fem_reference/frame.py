@@ -138,6 +138,10 @@ class Frame:
         """Slips of a virgin frame, (n, 2, fibres, layers)."""
         return self.sections.virgin(self.weights.shape[1])
 
+    def largest_plastic_strain(self, response: Response) -> np.ndarray:
+        """Of any fibre, by size, at each quadrature point, (n, 2) [-]."""
+        return np.asarray(np.abs(self.sections.plastic_strain(response.strain, response.slip)).max(axis=-1))
+
     def elastic_energy(self, response: Response) -> float:
         """Energy that unloading would give back, without the springs' [J]."""
         return float(np.sum(self.weights * response.stored))

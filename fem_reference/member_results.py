@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.frame import Frame, Response
+from fem_reference.frame import Frame
 from fem_reference.paths import Trace
 from scene import Scene
 
@@ -36,6 +36,30 @@ class MemberErrors:
 
 
 @dataclass(frozen=True)
+class MemberPath:
+    """One member along the path; k points, m quadrature points in order along the member, j element ends.
+
+    Attributes
+    ----------
+    axial_force, shear_force, moment : (k, m) float
+        N, Q [N] and M [N m].
+    curvature : (k, m) float
+        κ [1/m].
+    plastic_strain : (k, m) float
+        As in `MemberResult` [-].
+    shape : (k, j, 2) float
+        Displacements x, y of the element ends [m].
+    """
+
+    axial_force: np.ndarray
+    shear_force: np.ndarray
+    moment: np.ndarray
+    curvature: np.ndarray
+    plastic_strain: np.ndarray
+    shape: np.ndarray
+
+
+@dataclass(frozen=True)
 class MemberResult:
     """One member; k points of the path, m quadrature points in order along the member, j element ends.
 
@@ -55,6 +79,8 @@ class MemberResult:
         Element ends, from the start [m].
     shape : (j, 2) float
         Their displacements x, y at the end of the path [m].
+    path : MemberPath
+        The same all along.
     """
 
     end_forces: np.ndarray
@@ -65,6 +91,7 @@ class MemberResult:
     plastic_strain: np.ndarray
     point: np.ndarray
     shape: np.ndarray
+    path: MemberPath
 
     def differences(self, coarse: MemberResult) -> MemberErrors:
         """How far this is from the result of a coarser model."""
@@ -86,16 +113,15 @@ class MemberResult:
         )
 
 
-def member_results(
-    scene: Scene, frame: Frame, path: Trace, displacement: np.ndarray, response: Response
-) -> dict[str, MemberResult]:
-    """Results by member, from a path and the displacements (size,) and response at its end."""
-    plastic_strain = np.abs(frame.sections.plastic_strain(response.strain, response.slip)).max(axis=-1)
+def member_results(scene: Scene, frame: Frame, path: Trace) -> dict[str, MemberResult]:
+    """Results by member, from a path of ``frame``."""
+    spread = frame.element_weight + np.array(path.load)[:, None, None] * frame.element_pattern
+    contact = np.array(path.element_forces) - spread
+    stress, strain = np.array(path.stress), np.array(path.strain)
+    plastic_strain, moved = np.array(path.plastic_strain), np.array(path.displacements)
     if scene.yielding == "ideal-hinges":
         outermost = np.array([0.5 * m.section.depth for m in scene.members.values()]) / frame.sections.y.max(axis=1)
         plastic_strain *= outermost[frame.sections.kind, None]
-    spread = frame.element_weight + np.array(path.load)[:, None, None] * frame.element_pattern
-    contact = np.array(path.element_forces) - spread
     results = {}
     start = 0
     for name, mesh in frame.meshes.items():
@@ -107,14 +133,23 @@ def member_results(
         ends = np.stack([-contact[:, part.start, 0:3] @ turn.T, contact[:, part.stop - 1, 3:6] @ turn.T], axis=1)
         order = np.argsort(mesh.stations.ravel())
         nodes = np.vstack([frame.dofs[part, 0:2], frame.dofs[part.stop - 1, 3:5]])
+        along = MemberPath(
+            axial_force=stress[:, part, :, 0].reshape(len(stress), -1)[:, order],
+            shear_force=stress[:, part, :, 2].reshape(len(stress), -1)[:, order],
+            moment=stress[:, part, :, 1].reshape(len(stress), -1)[:, order],
+            curvature=strain[:, part, :, 1].reshape(len(strain), -1)[:, order],
+            plastic_strain=plastic_strain[:, part].reshape(len(strain), -1)[:, order],
+            shape=moved[:, nodes],
+        )
         results[name] = MemberResult(
             end_forces=ends,
             station=mesh.stations.ravel()[order],
-            axial_force=path.stress[-1][part, :, 0].ravel()[order],
-            moment=path.stress[-1][part, :, 1].ravel()[order],
-            curvature=response.strain[part, :, 1].ravel()[order],
-            plastic_strain=plastic_strain[part].ravel()[order],
+            axial_force=along.axial_force[-1],
+            moment=along.moment[-1],
+            curvature=along.curvature[-1],
+            plastic_strain=along.plastic_strain[-1],
             point=mesh.points,
-            shape=displacement[nodes],
+            shape=along.shape[-1],
+            path=along,
         )
     return results

@@ -40,8 +40,12 @@ class Trace:
     ----------
     displacement, load : list of float
         Displacement under control, from the first point [m], and load factor λ.
-    stress : list of (n, 2, 3) float
-        N, M, Q at the quadrature points.
+    displacements : list of (size,) float
+        Of all degrees of freedom.
+    strain, stress : list of (n, 2, 3) float
+        ε₀, κ, γ and N, M, Q at the quadrature points.
+    plastic_strain : list of (n, 2) float
+        Largest plastic strain of any fibre there [-].
     element_forces : list of (n, 8) float
         Forces on the elements' degrees of freedom, in global axes.
     external, elastic, plastic : list of float
@@ -54,7 +58,10 @@ class Trace:
 
     displacement: list[float] = field(default_factory=list)
     load: list[float] = field(default_factory=list)
+    displacements: list[np.ndarray] = field(default_factory=list)
+    strain: list[np.ndarray] = field(default_factory=list)
     stress: list[np.ndarray] = field(default_factory=list)
+    plastic_strain: list[np.ndarray] = field(default_factory=list)
     element_forces: list[np.ndarray] = field(default_factory=list)
     external: list[float] = field(default_factory=list)
     elastic: list[float] = field(default_factory=list)
@@ -94,7 +101,10 @@ class State:
         """Append this state to ``points``."""
         points.displacement.append(self.position - start)
         points.load.append(self.load)
+        points.displacements.append(self.displacement)
+        points.strain.append(self.response.strain)
         points.stress.append(self.response.stress)
+        points.plastic_strain.append(self.frame.largest_plastic_strain(self.response))
         points.element_forces.append(self.response.element_forces)
         points.external.append(self.external)
         points.elastic.append(self.frame.elastic_energy(self.response) + self.frame.spring_energy(self.displacement))

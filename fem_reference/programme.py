@@ -23,8 +23,8 @@ def trace(
     push: Push,
     legs: Sequence[np.ndarray],
     watch: Callable[[float], None] = lambda share: None,
-) -> tuple[Trace, State]:
-    """The path of ``frame`` through ``legs``, and its state at the end.
+) -> Trace:
+    """The path of ``frame`` through ``legs``.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def trace(
         points.stopped = str(error)
         if push.control == "load":
             points.stopped = f"{_what_ends(state)}: {error}"
-    return points, state
+    return points
 
 
 def _follow_legs(

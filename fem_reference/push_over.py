@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from fem_reference.dynamics import TOLERANCE as MOTION_TOLERANCE
 from fem_reference.plane import PlanePush, plane_push
 from fem_reference.plane.push import TOLERANCE as PLANE_TOLERANCE
 from fem_reference.pushover import Pushover, pushover
@@ -41,4 +42,6 @@ def push_over(
 
 def default_tolerance(scene: Scene) -> float:
     """Largest estimated error that is aimed at in ``scene`` when nothing else is said [-]."""
+    if scene.motion is not None:
+        return MOTION_TOLERANCE
     return PLANE_TOLERANCE if wants_plane_stress(scene) else BEAM_TOLERANCE

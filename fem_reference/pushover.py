@@ -14,7 +14,7 @@ from fem_reference.hinge_events import HingeEvent, hinge_events
 from fem_reference.judging import difference, energy_error, outcome, with_errors
 from fem_reference.legs import even_legs, resolved_legs, with_events
 from fem_reference.member_results import MemberErrors, MemberResult, member_results
-from fem_reference.paths import State, Trace
+from fem_reference.paths import Trace
 from fem_reference.programme import trace
 from scene import Scene
 
@@ -150,10 +150,7 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
         coarse = last
     theories = " and ".join(sorted({m.theory.replace("-", "–").title() for m in scene.members.values()}))
     path = fine.trace
-    members, rough = (
-        member_results(scene, solved.frame, solved.trace, solved.end.displacement, solved.end.response)
-        for solved in (fine, coarse)
-    )
+    members, rough = (member_results(scene, solved.frame, solved.trace) for solved in (fine, coarse))
     external, elastic, plastic = (np.array(values) for values in (path.external, path.elastic, path.plastic))
     return Pushover(
         method=f"displacement-based {_YIELDING[scene.yielding]} ({theories}, cubic Hermite), "
@@ -181,12 +178,11 @@ class _Solved:
 
     frame: Frame
     trace: Trace
-    end: State
     hinges: tuple[HingeEvent, ...]
 
 
 def _solve(scene: Scene, elements: int, fibres: int, legs: list[np.ndarray], watch: Callable[[float], None]) -> _Solved:
     frame = build_frame(scene, elements, fibres)
     control = control_vector(scene, frame.node_dofs, frame.size)
-    path, state = trace(frame, control, scene.push, legs, watch)
-    return _Solved(frame, path, state, hinge_events(frame, scene, path))
+    path = trace(frame, control, scene.push, legs, watch)
+    return _Solved(frame, path, hinge_events(frame, scene, path))

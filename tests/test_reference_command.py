@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import meshio
 import pytest
 
 from calibration import reference_command
@@ -33,9 +34,36 @@ def test_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
     assert [hinge["node"] for hinge in found["hinges"]] == ["root"]
     assert found["outcome"].startswith("mechanism")
     folder = tmp_path / "out" / "cantilever"
-    assert {file.name for file in folder.iterdir()} == {"reference.csv", "hinges.csv", "sections.csv", "reference.svg"}
+    tables = {"reference.csv", "hinges.csv", "sections.csv", "reference.svg"}
+    series = {"fields.pvd", *(f"fields-{i:02d}.vtu" for i in range(13))}
+    assert {file.name for file in folder.iterdir()} == tables | series
+    assert found["members"]["beam"]["error_estimate"]["moment"]
+    last = meshio.read(folder / "fields-12.vtu")
+    assert last.cells_dict["line"].shape[0] == found["elements"]
+    assert last.point_data["displacement"][-1, 1] == pytest.approx(-found["displacement"][-1], rel=1e-6)
+    assert last.point_data["moment"][0] == pytest.approx(found["members"]["beam"]["moment"][0], rel=1e-6)
     rows = list(csv.DictReader((folder / "reference.csv").read_text(encoding="utf-8").splitlines()))
     assert [float(row["load"]) for row in rows] == found["load"]
+
+
+def test_a_motion(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    text = builtin_text("cantilever")
+    push = text.index("[push]")
+    struck = text[:push].replace('at = ["1 m"', 'mass = "40 kg"\nvelocity = ["0 m/s", "-8 m/s"]\nat = ["1 m"')
+    Path("struck.toml").write_text(struck + '[motion]\nduration = "20 ms"\n', encoding="utf-8")
+    assert ductile("reference", "struck.toml", "--target-error", "2 %", "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert {"displacement", "load", "hinges", "error_estimate", "method", "seconds", "time", "peak"} <= set(found)
+    assert found["node"] == "tip"
+    assert found["peak"] < 0.0
+    folder = tmp_path / "out" / "struck"
+    rows = list(csv.DictReader((folder / "reference.csv").read_text(encoding="utf-8").splitlines()))
+    assert [float(row["displacement_m"]) for row in rows] == found["displacement"]
+    assert {"residual.csv", "reference.svg", "fields.pvd", "fields-25.vtu"} <= {file.name for file in folder.iterdir()}
+    ductile("reference", "struck.toml", "--target-error", "2 %")
+    said = capsys.readouterr().out
+    assert "Peak of tip" in said
+    assert "At rest" in said
 
 
 def test_results_are_kept_by_content(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

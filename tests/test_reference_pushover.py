@@ -15,7 +15,7 @@ from scene import Scene
 
 def loads(scene: Scene, elements: int, fibres: int, distances: np.ndarray) -> np.ndarray:
     frame = build_frame(scene, elements, fibres)
-    path, _ = trace(frame, frame.pattern, scene.push, [distances])
+    path = trace(frame, frame.pattern, scene.push, [distances])
     assert path.imbalance <= 1e-5
     assert not path.stopped
     return np.array(path.load[1:])

@@ -18,7 +18,7 @@ def reference(
     as_json: Json = False,
     cache: bool = True,
 ) -> int:
-    """Follow a push with the elastic–plastic finite-element reference: curve, hinges, energies, and their errors.
+    """Follow a push or a motion with the elastic–plastic finite-element reference; each number with its error.
 
     Parameters
     ----------
@@ -26,9 +26,9 @@ def reference(
         A TOML file, or the name of a built-in scene.
     target_error
         Largest estimated error of the load, as a share of the largest load ("0.05 %", "0.001"); 0.05 % by default, in
-        plane stress 0.2 %.
+        plane stress 0.2 %; of a motion, of the displacement, 1 %.
     output
-        Folder for the curve, hinges and sections as CSV, a plot as SVG, and the fields of plane stress as VTU;
+        Folder for the curve, hinges and sections as CSV, a plot as SVG, and fields as VTU;
         out/SCENE by default.
     as_json
         Print one JSON object, in SI units, in place of tables.

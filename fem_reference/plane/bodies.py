@@ -46,6 +46,8 @@ class PlaneScene:
 
 def plane_fault(scene: Scene) -> str | None:
     """Why plane stress cannot follow ``scene``; None when it can."""
+    if scene.pushed is not None and scene.pushed.control != "displacement":
+        return "plane stress follows pushes under displacement control"
     if scene.meshed is not None:
         return None
     if len(scene.members) != 1 or scene.pushed is None:
@@ -65,7 +67,7 @@ def plane_fault(scene: Scene) -> str | None:
     far = member.end if scene.push.node == member.start else member.start
     near = scene.nodes[scene.push.node]
     if scene.nodes[far].support != "clamped" or any(
-        node.spring or node.mass or any(node.settlement) for node in scene.nodes.values()
+        node.spring or node.bearing or node.mass or any(node.settlement) for node in scene.nodes.values()
     ):
         return "plane stress follows members that are clamped at the other end, without springs, masses or settlements"
     c, s, _ = scene.axis(next(iter(scene.members)))

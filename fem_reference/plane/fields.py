@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
 from fem_reference.plane.continuum import Continuum, State
 from fem_reference.plane.j2 import MODES, von_mises
 from fem_reference.plane.mesh import nearest_points
 from fem_reference.plane.push import Fields
+from fem_reference.vtu import series, vtu_text
 
 _CELLS = {6: "triangle6", 9: "quad9"}
 
@@ -20,43 +18,25 @@ def field_files(fields: Fields, name: str = "fields") -> dict[str, str]:
 
     The time of a state in the series is the way of the pushed edge so far [m].
     """
-    texts = {f"{name}-{i:02d}.vtu": vtu(fields.continuum, state) for i, state in enumerate(fields.states)}
+    states = [vtu(fields.continuum, state) for state in fields.states]
     way = np.append(0.0, np.cumsum(np.abs(np.diff(fields.displacement))))
-    entries = "\n".join(
-        f'    <DataSet timestep="{time:.9g}" part="0" file="{file}"/>' for time, file in zip(way, texts, strict=True)
-    )
-    texts[f"{name}.pvd"] = (
-        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
-        f"  <Collection>\n{entries}\n  </Collection>\n</VTKFile>\n"
-    )
-    return texts
+    return series(name, way.tolist(), states)
 
 
 def vtu(continuum: Continuum, state: State) -> str:
     """One state as the text of a VTU file: displacement [m], stresses [Pa] and plastic strain [-] at the nodes."""
-    import meshio
-
     mesh = continuum.mesh
     stress = at_nodes(continuum, state.stress @ MODES)
     moved = continuum.nodal_displacement(state.displacement)
     data = {
-        "displacement": np.column_stack([moved, np.zeros(len(moved))]),
+        "displacement": moved,
         "stress_xx": stress[:, 0],
         "stress_yy": stress[:, 1],
         "stress_xy": stress[:, 2],
         "von_mises": at_nodes(continuum, von_mises(state.stress)[..., None])[:, 0],
         "equivalent_plastic_strain": at_nodes(continuum, state.accumulated[..., None])[:, 0],
     }
-    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
-    written = meshio.Mesh(
-        points,
-        [(_CELLS[mesh.cells.shape[1]], mesh.cells)],
-        point_data={key: np.ascontiguousarray(values, dtype=np.float32) for key, values in data.items()},
-    )
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "state.vtu"
-        meshio.vtu.write(path, written, binary=True, compression="zlib")
-        return path.read_text(encoding="utf-8")
+    return vtu_text(mesh.points, _CELLS[mesh.cells.shape[1]], mesh.cells, data)
 
 
 def at_nodes(continuum: Continuum, values: np.ndarray) -> np.ndarray:

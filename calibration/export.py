@@ -61,7 +61,15 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
             "dissipated": best.push.dissipated,
             "seconds": best.push.seconds,
         },
-        "errors": asdict(best.errors),
+        "members": {
+            name: {**asdict(plan), "why": result.why(name), "model": asdict(best.model.of(name))}
+            for name, plan in result.plans.items()
+        },
+        "errors": {**asdict(best.errors), "frequency": result.findings.frequency_error},
+        "hinges": [
+            {"where": pair.where, "load": pair.load, "model_load": pair.model_load} for pair in result.findings.hinges
+        ],
+        "hinges_in_order": result.findings.hinges_in_order,
         "speed": {
             "seconds_per_simulated_second": best.push.seconds_per_simulated_second,
             "microseconds_per_joint_step": best.push.microseconds_per_joint_step,
@@ -70,6 +78,7 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
         "failures": [{**settings(failure.model), "reason": failure.reason} for failure in result.failures],
         "target_error": result.target_error,
         "target_met": result.target_met,
+        "limit": result.limit,
         "versions": versions(),
     }
 

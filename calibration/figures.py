@@ -41,7 +41,8 @@ def curves(result: Calibration) -> Figure:
         )
         label = f"{push.bodies} rigid bodies, {push.joints} joints"
         top.plot(1e3 * push.displacement, 1e-3 * push.load, color=MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
-        top.set_ylabel("load [kN]")
+        factor = any(load.kind == "proportional" for load in result.scene.loads)
+        top.set_ylabel("load factor / 1000" if factor else "load [kN]")
         top.legend(loc="lower right")
         difference = push.load_at_distances - reference.load
         share = 100.0 * difference / np.abs(reference.load).max()

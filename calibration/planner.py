@@ -32,16 +32,20 @@ _EQUAL = ((9, 8), (17, 12), (33, 16))
 _FINE_STEPPING = ((1.0 / 240.0, 2), (1.0 / 1000.0, 4))
 _FINE = ((10, 16), (14, 24), (20, 24))
 
+_LAW_COSTS = {"rigid-plastic": 1.0, "elastic-plastic": 1.0, "interaction": 6.5}
+
 
 def relative_cost(model: Model, members: Iterable[str] = ("",)) -> float:
     """Cost of a second of simulation of ``members``, in units of one elastic–plastic joint stepped once.
 
-    Measured on a chain: what Chipmunk and the solver do for a joint costs about as much as sixteen fibres.
+    Measured on chains and frames: what Chipmunk and the solver do for a joint costs about as much as sixteen fibres;
+    the return to a yield surface costs several times that.
     """
     joints = 0.0
     for name in members:
         own = model.of(name)
-        joints += (own.joints - 1) * (1.0 + (own.fibres if own.law == "fibre" else 0) / 16.0)
+        law = 1.0 + own.fibres / 16.0 if own.law == "fibre" else _LAW_COSTS[own.law]
+        joints += (own.joints - 1) * law
     return joints * (0.8 + 0.1 * model.iterations) / model.dt
 
 

@@ -166,11 +166,18 @@ class Bench:
         self.scene, self.reference = scene, reference
         self.trials: list[Trial] = []
         self.failures: list[Failure] = []
+        self._known: dict[tuple[object, ...], Trial | None] = {}
         # The first model in a process also pays for loading the kernels; that is no part of its cost.
         push_model(scene, Model("lobatto", 2, "elastic-plastic"), reference.displacement[:2])
 
     def try_out(self, model: Model) -> Trial | None:
-        """Push ``model`` as the reference was pushed; None when it breaks down."""
+        """Push ``model`` as the reference was pushed; None when it breaks down. What was tried is not tried again."""
+        key = (model.dt, model.iterations, *(model.of(name) for name in self.scene.members))
+        if key not in self._known:
+            self._known[key] = self._push(model)
+        return self._known[key]
+
+    def _push(self, model: Model) -> Trial | None:
         try:
             push = push_model(self.scene, model, self.reference.displacement)
         except SolverError as error:

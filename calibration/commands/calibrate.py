@@ -26,7 +26,7 @@ def calibrate(
     target_error
         Largest difference of load allowed on the path, as a share of the largest load ("1 %", "0.003").
     output
-        Folder for report.html, joints.json and the curves as CSV; out/SCENE by default.
+        Folder for report.html, report.md, calibration.json, joints.json and the curves as CSV; out/SCENE by default.
     as_json
         Print one JSON object, in SI units, in place of the report.
     """
@@ -45,7 +45,7 @@ def calibrate(
         import sim  # noqa: F401
     from calibration.export import calibration_object, curve_csv, joint_table
     from calibration.page import report_page
-    from calibration.report import print_report
+    from calibration.report import print_report, report_markdown
     from calibration.tuning import calibrate as tune
 
     with progress_bar(messages) as watch:
@@ -55,6 +55,7 @@ def calibrate(
         folder.write(
             {
                 "report.html": report_page(result),
+                "report.md": report_markdown(result),
                 "calibration.json": json.dumps(whole, indent=1),
                 "joints.json": json.dumps(joint_table(loaded, result.best.model, scene), indent=1),
                 "reference.csv": curve_csv(result.reference.displacement, result.reference.load),

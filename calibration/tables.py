@@ -1,0 +1,200 @@
+"""What a report says, as tables: the same on the terminal, in Markdown and in HTML."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from calibration.export import joint_table
+from calibration.tuning import Calibration
+from capacity.units import engineering
+from sim import MemberModel, Model
+
+#: Heads of columns whose words may take several lines.
+WRAPPED = ("<why", "<model", "<kind")
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table.
+
+    Attributes
+    ----------
+    title, note : str
+    heads : tuple of str
+        Of the columns; those whose values are words begin with "<".
+    rows : tuple of tuple of str
+    marked : int
+        The row that matters most; -1 for none.
+    wide : tuple of str
+        Heads of columns that a narrow terminal goes without.
+    """
+
+    title: str
+    note: str
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    marked: int = -1
+    wide: tuple[str, ...] = ()
+
+
+def verdict(result: Calibration) -> tuple[str, str]:
+    """Whether the target is met, and with what; two sentences."""
+    best, push = result.best, result.best.push
+    head = "Target met" if result.target_met else "Target missed"
+    asked = f"{percent(best.errors.path_max)} of the peak load; {percent(result.target_error)} was asked"
+    text = (
+        f"{push.bodies} rigid bodies with {push.joints} joints ({in_words(best.model, result.scene.members)}) follow "
+        f"the reference within {asked}. "
+        f"A simulated second takes {engineering(push.seconds_per_simulated_second, 's')} "
+        f"({stepping(best.model)}): {1.0 / push.seconds_per_simulated_second:.0f} times faster than real time."
+    )
+    return head, text
+
+
+def sheets(result: Calibration) -> list[Sheet]:
+    """All tables of the report, in its order."""
+    tables = [_capacities(result), _members(result), _errors(result)]
+    if result.findings.hinges:
+        tables.append(_hinges(result))
+    return [*tables, _joints(result), _trials(result)]
+
+
+def percent(share: float, digits: int = 3) -> str:
+    """A share as text."""
+    return f"{100.0 * share:.{digits}g} %"
+
+
+def in_words(model: Model, members: Iterable[str]) -> str:
+    """How the ``members`` are modelled, in a few words."""
+    counts = Counter(_own_words(model.of(name)) for name in members)
+    if len(counts) == 1:
+        return next(iter(counts))
+    return "; ".join(f"{count} × {words}" for words, count in counts.items())
+
+
+def _own_words(own: MemberModel) -> str:
+    return f"{own.rule} {own.joints}, {f'{own.fibres} fibres' if own.law == 'fibre' else own.law}"
+
+
+def stepping(model: Model) -> str:
+    """How a model is stepped."""
+    return f"dt = 1/{1.0 / model.dt:.0f} s, {model.iterations} iterations"
+
+
+def _capacities(result: Calibration) -> Sheet:
+    units = {"N_max": "N", "Q_max": "N", "M_max": "N m", "M_yield": "N m", "EA": "N", "GA_s": "N", "EI": "N m²"}
+    rows = [
+        (
+            name,
+            result.scene.members[name].section.name,
+            *(engineering(getattr(c, key), unit) for key, unit in units.items()),
+        )
+        for name, c in result.capacity.items()
+    ]
+    note = f"Yield criterion {result.scene.criterion}."
+    heads = ("<member", "<section", *units)
+    return Sheet("Capacities", note, heads, tuple(rows), wide=("M_yield", "EA", "GA_s"))
+
+
+def _members(result: Calibration) -> Sheet:
+    rows = [(name, plan.kind, result.why(name)) for name, plan in result.plans.items()]
+    return Sheet("What each member needs", "", ("<member", "<decided", "<why"), tuple(rows))
+
+
+def _errors(result: Calibration) -> Sheet:
+    errors, findings = result.best.errors, result.findings
+    signed = {
+        "initial stiffness": errors.stiffness,
+        "first yield (slope fallen by 2 %)": errors.first_yield,
+        "largest load": errors.collapse_load,
+        "residual displacement, of the largest displacement": errors.residual,
+        "energy of the loops": errors.loop_energy,
+        "first natural frequency": findings.frequency_error,
+    }
+    rows = [
+        ("the reference, by its own estimate", percent(result.reference.error_estimate)),
+        ("path, of the peak load", percent(errors.path_max)),
+        *((name, f"{100.0 * value:+.3f} %") for name, value in signed.items() if value is not None),
+    ]
+    if findings.hinges_in_order is not None:
+        rows.append(("hinges where and as the reference has them", "yes" if findings.hinges_in_order else "no"))
+    model = result.best.model
+    note = f"Model: {in_words(model, result.scene.members)}; {stepping(model)}. Reference: {result.reference.method}."
+    return Sheet("Errors", note, ("<kind", "error"), tuple(rows))
+
+
+def _hinges(result: Calibration) -> Sheet:
+    scale = max(abs(float(load)) for load in result.reference.load)
+    rows = []
+    for pair in result.findings.hinges:
+        model = "none"
+        difference = "–"
+        if pair.model_load is not None:
+            model, difference = f"{pair.model_load:.5g}", f"{100.0 * (pair.model_load - pair.load) / scale:+.2f} %"
+        rows.append((pair.where, f"{pair.load:.5g}", model, difference))
+    note = (
+        "Loads at which plastic hinges form, in the reference's order; a joint counts as one at 98.5 % of its plastic "
+        "moment. Differences are shares of the peak load."
+    )
+    return Sheet("Hinges", note, ("<where", "reference", "model", "difference"), tuple(rows))
+
+
+def _joints(result: Calibration) -> Sheet:
+    table = joint_table(result.scene, result.best.model)
+    rows = []
+    for i, joint in enumerate(table["joints"], 1):
+        stiffness = joint["elastic_stiffness"]
+        rows.append(
+            (
+                str(i),
+                f"{joint['a']} → {joint['b']}",
+                f"{joint['member']} {joint['position']:.4g} m" if "member" in joint else "support",
+                f"{joint['length']:.4g} m" if "length" in joint else "–",
+                joint["law"]["name"],
+                engineering(stiffness["axial"], "N/m"),
+                engineering(stiffness["shear"], "N/m"),
+                engineering(stiffness["rotation"], "N m/rad"),
+            )
+        )
+    note = (
+        "Stiffnesses are those of the length that a joint stands for. Also in joints.json, with bodies, anchors and "
+        "fibres: everything needed to build them elsewhere."
+    )
+    heads = (
+        "joint",
+        "<bodies",
+        "<at",
+        "stands for",
+        "<law",
+        "axial stiffness",
+        "shear stiffness",
+        "rotational stiffness",
+    )
+    return Sheet("Joints", note, heads, tuple(rows), wide=("<bodies", "axial stiffness", "shear stiffness"))
+
+
+def _trials(result: Calibration) -> Sheet:
+    rows = []
+    for trial in result.trials:
+        push = trial.push
+        rows.append(
+            (
+                in_words(trial.model, result.scene.members),
+                f"{1 / trial.model.dt:.0f}",
+                str(trial.model.iterations),
+                str(push.bodies),
+                percent(trial.errors.path_max),
+                f"{1e3 * push.seconds_per_simulated_second:.3g}",
+                f"{push.microseconds_per_joint_step:.2f}",
+            )
+        )
+    note = (
+        "All models tried, from cheap to dear, with milliseconds for a simulated second and microseconds for a joint "
+        "and step. Times are this machine's and vary from run to run; errors do not."
+    )
+    if result.failures:
+        note += f" {len(result.failures)} more could not be stepped, the first: {result.failures[0].reason}."
+    heads = ("<model", "1/dt", "iterations", "bodies", "path error", "ms/s", "µs")
+    return Sheet("Speed against error", note, heads, tuple(rows), result.trials.index(result.best))

@@ -17,7 +17,7 @@ joint from a to b are u = extension along x, v = slip along y, θ = rotation of 
 
 from scene.actions import Load, LoadKind, Motion, Push
 from scene.bodies import GROUND, Body, Box, Circle, Ground, Joint, Polygon, Shape
-from scene.checks import check
+from scene.checks import check, is_supported
 from scene.model import HELD, Member, MemberEnd, Node, Scene
 from scene.plane import EdgeSupport, Plane
 from scene.programme import Measure, Simulation
@@ -53,6 +53,7 @@ __all__ = [
     "builtin_names",
     "builtin_text",
     "check",
+    "is_supported",
     "json_schema",
     "load_scene",
     "parse_scene",

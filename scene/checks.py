@@ -42,13 +42,14 @@ def check(scene: Scene) -> Scene:
         _check_push(scene, scene.pushed)
     if scene.motion is not None:
         _check_motion(scene, scene.motion)
-    elif scene.pushed is not None and not _is_supported(scene):
+    elif scene.pushed is not None and not is_supported(scene):
         raise InputError("nodes", "nothing is supported", 'give a node support = "clamped"')
     check_simulation(scene)
     return scene
 
 
-def _is_supported(scene: Scene) -> bool:
+def is_supported(scene: Scene) -> bool:
+    """Whether any node is held, or tied to the ground by a spring."""
     return any(any(node.held) or node.spring is not None or node.bearing for node in scene.nodes.values())
 
 

@@ -9,7 +9,7 @@ import msgspec
 
 from capacity import Capacity, InputError, Material, Section, capacity
 from scene.actions import Load, LoadKind, Motion, Push, unit_vector
-from scene.bodies import Body, Coefficient, Ground, Joint
+from scene.bodies import Body, Coefficient, Ground, Joint, Point
 from scene.plane import Plane
 from scene.programme import Measure, Simulation
 from scene.quantities import Acceleration, Angle, Length, Mass, RotationalStiffness, Speed, Stiffness, si
@@ -69,19 +69,15 @@ class Node(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return HELD[self.support]
 
 
-class Member(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A straight prismatic member from one node to another.
+class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """What a member is made of.
 
     Attributes
     ----------
-    start, end : str
-        Names of the nodes; written ``from`` and ``to``.
     section : Section
     material : Material
     theory : str
         ``"timoshenko"`` with shear flexibility, ``"euler-bernoulli"`` without.
-    releases : tuple of str
-        Ends, ``"from"`` or ``"to"``, that are hinged to their node and so bear no moment.
     break_elongation, break_slip : Length, optional
         Plastic deformations of a joint at which it breaks in a simulation [m]; never by default.
     break_rotation : Angle, optional
@@ -90,16 +86,54 @@ class Member(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         Of its surface, where something touches it in a simulation.
     """
 
-    start: str = msgspec.field(name="from")
-    end: str = msgspec.field(name="to")
     section: Section
     material: Material
     theory: Theory = "timoshenko"
-    releases: tuple[MemberEnd, ...] = ()
     break_elongation: Length | None = None
     break_slip: Length | None = None
     break_rotation: Angle | None = None
     friction: Coefficient = 0.5
+
+
+class Member(Profile, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """A straight prismatic member from one node to another.
+
+    Attributes
+    ----------
+    start, end : str
+        Names of the nodes; written ``from`` and ``to``.
+    releases : tuple of str
+        Ends, ``"from"`` or ``"to"``, that are hinged to their node and so bear no moment.
+    """
+
+    start: str = msgspec.field(name="from")
+    end: str = msgspec.field(name="to")
+    releases: tuple[MemberEnd, ...] = ()
+
+
+class Grid(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A frame of bays and storeys.
+
+    Its nodes are called ``NAME-i-j``, column line i from the left and floor j from the ground, both from 0; its members
+    ``NAME-column-i-j`` up to floor j, and ``NAME-beam-i-j`` to the right of column line i on floor j.
+
+    Attributes
+    ----------
+    bays, storeys : tuple of Length
+        Widths from the left and heights from the ground [m].
+    columns, beams : Profile
+    at : (Length, Length)
+        Where the foot of the left column stands [m].
+    support : str
+        Of all feet.
+    """
+
+    bays: tuple[Length, ...]
+    storeys: tuple[Length, ...]
+    columns: Profile
+    beams: Profile
+    at: Point = (si(0.0), si(0.0))
+    support: Support = "clamped"
 
 
 class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -110,6 +144,8 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title : str
     nodes : dict[str, Node]
     members : dict[str, Member]
+    grids : dict[str, Grid]
+        As a file has them; `scene.grids.spelled_out` puts them among nodes and members.
     pushed : Push, optional
         Written ``push``; see the property of that name.
     motion : Motion, optional
@@ -142,6 +178,7 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title: str
     nodes: dict[str, Node] = {}
     members: dict[str, Member] = {}
+    grids: dict[str, Grid] = {}
     pushed: Push | None = msgspec.field(name="push", default=None)
     motion: Motion | None = None
     simulation: Simulation | None = None

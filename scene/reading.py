@@ -12,6 +12,7 @@ import msgspec
 from capacity import InputError, Material, Section, parse_material, parse_section
 from capacity.units import QUANTITIES
 from scene.checks import check
+from scene.grids import spelled_out
 from scene.model import Scene
 from scene.quantities import Quantity
 
@@ -65,7 +66,7 @@ def parse_scene(text: str, source: str) -> Scene:
     except tomllib.TOMLDecodeError as error:
         raise InputError(source, f"it is not valid TOML ({error})", "mend that line") from error
     try:
-        return check(msgspec.convert(raw, Scene, dec_hook=_read))
+        return check(spelled_out(msgspec.convert(raw, Scene, dec_hook=_read)))
     except msgspec.ValidationError as error:
         raise _explained(error, raw).at(source) from error
     except InputError as error:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import pymunk
 
 from capacity import InputError
-from scene import Member, Scene, Simulation
+from scene import Member, Scene, Simulation, is_supported
 from sim.contact_watch import ContactWatch, is_touching
 from sim.direct_joints import add_joints
 from sim.first_touch import first_touches, hold_back
@@ -18,10 +18,13 @@ from sim.loose_bodies import add_bodies, add_grounds
 from sim.measures import Watch
 from sim.members import Assembly, assemble
 from sim.model import Model
+from sim.motion import set_going
 from sim.prescribed_push import PrescribedPush
+from sim.settling import settle
 from sim.vehicles import Car, add_vehicles
 
-_SCHEMES = {"average-acceleration": AVERAGE_ACCELERATION, "implicit-euler": IMPLICIT_EULER}
+# Way per step that counts as rest before a motion [m].
+_REST = 1e-12
 
 
 class World:
@@ -42,7 +45,7 @@ class World:
     InputError
         When there is no programme to follow, or a push shall have another duration.
     SolverError
-        When a scene that is pushed does not come to rest under its own weight.
+        When a scene that is pushed or set in motion does not come to rest under its own weight.
 
     Attributes
     ----------
@@ -78,7 +81,7 @@ class World:
         self.space = space = pymunk.Space()
         space.iterations = run.iterations if iterations is None else iterations
         space.collision_slop = run.collision_slop
-        scheme = _SCHEMES[run.integration or ("average-acceleration" if scene.pushed is None else "implicit-euler")]
+        scheme = _scheme(scene, run)
         self.time, self.steps = 0.0, 0
         self.part, self._parts_left, self._fewest_parts = self.dt, 0, 1
         self._largest_travel = run.largest_travel
@@ -89,9 +92,12 @@ class World:
             name: (joint,) for name, joint in add_joints(scene, space, self.bodies, scheme).items()
         }
         self.cars: dict[str, Car] = add_vehicles(scene, space)
-        self._assembly = self._add_members(Model(run.rule, run.joints, run.law, scheme=scheme))
+        self._assembly = self._add_members(
+            Model(run.rule, run.joints, run.law, damping=run.joint_damping, scheme=scheme)
+        )
         self._loads = None if self._assembly is None else LoadProgramme(scene, self._assembly)
         self.push = self._start_push()
+        self._start_motion()
         self.duration = self._duration(run, duration)
         self._continuous = [self.bodies[name] for name, body in scene.bodies.items() if body.continuous]
         self.labels = {joint: label for label, joint in self._labelled()}
@@ -121,12 +127,20 @@ class World:
             return None
         return PrescribedPush(self.scene, self._assembly)
 
+    def _start_motion(self) -> None:
+        """From rest under dead loads, where something bears them, with the velocities that the scene's motion says."""
+        if self.scene.motion is not None and self._assembly is not None:
+            if is_supported(self.scene):
+                settle(self.scene, self._assembly, _REST)
+            set_going(self.scene, self.scene.motion, self._assembly)
+
     def _duration(self, run: Simulation, wanted: float | None) -> float:
         if self.push is not None:
             if wanted is not None:
                 raise InputError("duration", "a push ends at its last stop", "leave it out")
             return self.push.duration
-        length = run.duration if wanted is None else wanted
+        own = run.duration if self.scene.motion is None else self.scene.motion.duration
+        length = own if wanted is None else wanted
         if length is None:
             raise InputError("simulation", "there is none in the scene", 'add [simulation] with duration = "5 s"')
         return float(length)
@@ -216,6 +230,14 @@ class World:
     def results(self) -> dict[str, float | list[float]]:
         """What the scene's measures ask for, by their names, up to now."""
         return {name: watch.result() for name, watch in self._watches.items()}
+
+
+def _scheme(scene: Scene, run: Simulation) -> tuple[float, float]:
+    """β and δ of the time integration."""
+    by_default = "average-acceleration" if scene.pushed is None else "implicit-euler"
+    if (run.integration or by_default) == "implicit-euler":
+        return IMPLICIT_EULER
+    return AVERAGE_ACCELERATION[0], run.numerical_damping
 
 
 def _limits(member: Member) -> Limits:

@@ -5,8 +5,8 @@ from sim import chipmunk
 chipmunk.verify()
 
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits  # noqa: E402  (nothing may run on structs that do not fit)
-from sim.laws import Bearing, ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic  # noqa: E402
-from sim.member_laws import LAWS  # noqa: E402
+from sim.joint_arrays import JointArrays  # noqa: E402
+from sim.laws import LAWS, Bearing, ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic, section_law  # noqa: E402
 from sim.members import Assembly, JointPlace, assemble  # noqa: E402
 from sim.model import MemberModel, Model  # noqa: E402
 from sim.modes import natural_modes  # noqa: E402
@@ -28,6 +28,7 @@ __all__ = [
     "ElasticPlastic",
     "FibreSection",
     "InteractionPlastic",
+    "JointArrays",
     "JointPlace",
     "Law",
     "Limits",
@@ -47,5 +48,6 @@ __all__ = [
     "natural_modes",
     "push_over",
     "radau",
+    "section_law",
     "set_going",
 ]

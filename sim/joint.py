@@ -7,11 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pymunk
 
+from capacity import InputError
+from capacity.behaviour import from_elastic_rotation, reduced, stiffness_and_damping
 from sim import chipmunk
 from sim.kernels import AFTER_STEP, FUNCTIONS
-from sim.laws import Law
+from sim.laws import ElasticPlastic, Law
 
 if TYPE_CHECKING:
     from sim.structure import Structure
@@ -122,6 +125,67 @@ class DuctileJoint(pymunk.Constraint):
         chipmunk.adopt(self._constraint, FUNCTIONS, AFTER_STEP)
         self.ask_for_structure()
 
+    @classmethod
+    def by_frequency(
+        cls,
+        a: pymunk.Body,
+        b: pymunk.Body,
+        at: tuple[float, float],
+        frequency: float,
+        damping_ratio: float,
+        *,
+        elastic_rotation: float | None = None,
+        capacity: tuple[float, float, float] = (math.inf, math.inf, math.inf),
+        translation_frequency: float = 1000.0,
+        limits: Limits = Limits(),
+        direction: float | None = None,
+        scheme: tuple[float, float] = IMPLICIT_EULER,
+        on_break: Callable[[DuctileJoint], None] | None = None,
+    ) -> DuctileJoint:
+        """An elastic–plastic joint given by how its bodies vibrate on it, as in other engines.
+
+        k = (2π f)² I and c = 2 ζ 2π f I with the moment of inertia I = I_a I_b / (I_a + I_b) that the bodies put
+        against each other about their own centres; likewise with their masses in translation.
+
+        Parameters
+        ----------
+        frequency, damping_ratio : float
+            f [Hz] and ζ [-] of the rotation.
+        elastic_rotation : float, optional
+            Largest elastic rotation [rad], which makes M_max = k θ; in place of the capacity's M_max.
+        capacity : (float, float, float)
+            N_max [N], Q_max [N], M_max [N m].
+        translation_frequency : float
+            f of extension and slip [Hz], high, for the joint is rigid in them; ζ as in rotation.
+
+        Raises
+        ------
+        InputError
+            When a number is out of range, or both M_max and the elastic rotation are given.
+        ValueError
+            When neither body is dynamic.
+        """
+        moment, mass = (_against(a, b, what) for what in ("moment", "mass"))
+        turn, turn_damping = stiffness_and_damping(frequency, damping_ratio, moment)
+        shift, shift_damping = stiffness_and_damping(translation_frequency, damping_ratio, mass)
+        N_max, Q_max, M_max = capacity
+        if elastic_rotation is not None:
+            if M_max < math.inf:
+                fault = "M_max and the largest elastic rotation are both given"
+                raise InputError("elastic rotation", fault, "leave one of them out")
+            M_max = from_elastic_rotation(turn, elastic_rotation).value
+        return cls(
+            a,
+            b,
+            at,
+            ElasticPlastic((shift, shift, turn), (N_max, Q_max, M_max)),
+            direction=direction,
+            damping=(shift_damping, shift_damping, turn_damping),
+            limits=limits,
+            scheme=scheme,
+            on_break=on_break,
+        )
+
     def ask_for_structure(self) -> None:
         """Have the joints of its space grouped into structures anew at the start of the next step."""
         from sim.structure import group
@@ -138,6 +202,20 @@ class DuctileJoint(pymunk.Constraint):
         ax, ay, bx, by = self.geometry[:4]
         x, y = body.local_to_world(body.center_of_gravity + ((ax, ay) if body is self.a else (bx, by)))
         return x, y
+
+    def rates_on(self, body: pymunk.Body) -> np.ndarray:
+        """How fast the joint's end on ``body`` moves along its axes and turns, for the body's vx, vy and ω, (3, 3)."""
+        rest_a, rest_b, turn = self.geometry[4:7]
+        angle = (1.0 - turn) * (self.a.angle + rest_a) + turn * (self.b.angle + rest_b)
+        c, s = math.cos(angle), math.sin(angle)
+        arm = pymunk.Vec2d(*self.point_on(body)) - body.local_to_world(body.center_of_gravity)
+        return np.array([[c, s, s * arm.x - c * arm.y], [-s, c, c * arm.x + s * arm.y], [0.0, 0.0, 1.0]])
+
+    def rate(self) -> np.ndarray:
+        """Rates of extension, slip and rotation, (3,) [m/s, m/s, rad/s]."""
+        a, b = (self.rates_on(body) @ [*body.velocity, body.angular_velocity] for body in (self.a, self.b))
+        rates: np.ndarray = b - a
+        return rates
 
     @property
     def structure(self) -> Structure | None:
@@ -177,6 +255,18 @@ class DuctileJoint(pymunk.Constraint):
         )
 
     @property
+    def elastic_deformation(self) -> tuple[float, float, float]:
+        """Extension [m], slip [m] and rotation [rad] that the force explains; the rest of `deformation` stays."""
+        return self._row("elastic_deformation")
+
+    @property
+    def active_limit(self) -> str:
+        """What gave way in the last step: ``""``, ``"M"``, ``"N+Q"``, ``"N-Q-M"``, ``"fibres"``, ``"broken"``."""
+        from sim.joint_arrays import JointArrays
+
+        return JointArrays([self]).active_limit[0]
+
+    @property
     def capacity_used(self) -> float:
         """Share of the plastic capacity used, the largest over elongation, slip and rotation; 1 when broken."""
         return 0.0 if self._structure is None else float(self._structure.capacity_used[self._index])
@@ -196,6 +286,11 @@ class DuctileJoint(pymunk.Constraint):
             return 0.0, 0.0, 0.0
         x, y, z = getattr(self._structure, name)[self._index].tolist()
         return x, y, z
+
+
+def _against(a: pymunk.Body, b: pymunk.Body, what: str) -> float:
+    """Mass or moment of inertia that two bodies put against each other; one that is held puts any against the other."""
+    return reduced(*(getattr(x, what) if x.body_type == pymunk.Body.DYNAMIC else math.inf for x in (a, b)))
 
 
 def _anchor(body: pymunk.Body, at: tuple[float, float]) -> list[float]:

@@ -6,11 +6,9 @@ import math
 
 from capacity import Capacity, FacetSurface, Interaction
 from scene import Member, Scene
-from sim.laws import ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic
+from sim.laws import LAWS, ElasticPlastic, Law, RigidPlastic, section_law
 from sim.model import Model
 
-#: Names of the laws.
-LAWS = ("rigid-plastic", "elastic-plastic", "interaction", "fibre")
 #: Shear stiffness of an Euler–Bernoulli member, which has none of its own to give way, over EI / L²: shear adds 3e-5
 #: to the deflection of a cantilever and 5e-4 to that of a beam fixed at both ends.
 _SHEAR_RIGID = 1e5
@@ -38,30 +36,28 @@ class MemberLaws:
         A ``pinned`` one bears no moment; an ``elastic`` one does not yield.
         """
         member, c = self._scene.members[name], self._scene.capacity(name)
-        model = self._model.of(name)
-        stiffness = self._stiffness(name, c, length)
+        model, shear = self._model.of(name), self._shear(name, c) / length
         if pinned:
             if model.law == "rigid-plastic":
                 return RigidPlastic((c.N_max, c.Q_max, 0.0))
-            return ElasticPlastic((*stiffness[:2], 0.0), (c.N_max, c.Q_max, 0.0))
+            return ElasticPlastic((c.EA / length, shear, 0.0), (c.N_max, c.Q_max, 0.0))
         if elastic:
-            return ElasticPlastic(stiffness, (math.inf, math.inf, math.inf))
-        match model.law:
-            case "rigid-plastic":
-                return RigidPlastic.of_section(c)
-            case "elastic-plastic":
-                return ElasticPlastic(stiffness, (c.N_max, c.Q_max, c.M_max))
-            case "interaction":
-                return InteractionPlastic(stiffness, self._surface(member))
-            case _:
-                section, criterion = member.section, self._scene.criterion
-                return FibreSection.of_section(section, member.material, length, model.fibres, criterion, stiffness[1])
+            return ElasticPlastic((c.EA / length, shear, c.EI / length), (math.inf, math.inf, math.inf))
+        return section_law(
+            model.law,
+            member.section,
+            member.material,
+            length,
+            criterion=self._scene.criterion,
+            fibres=model.fibres,
+            shear_stiffness=shear,
+            surface=self._surface(member) if model.law == "interaction" else None,
+        )
 
-    def _stiffness(self, name: str, c: Capacity, length: float) -> tuple[float, float, float]:
-        shear = c.GA_s
+    def _shear(self, name: str, c: Capacity) -> float:
         if self._scene.members[name].theory == "euler-bernoulli":
-            shear = _SHEAR_RIGID * c.EI / self._scene.axis(name)[2] ** 2
-        return c.EA / length, shear / length, c.EI / length
+            return _SHEAR_RIGID * c.EI / self._scene.axis(name)[2] ** 2
+        return c.GA_s
 
     def _surface(self, member: Member) -> FacetSurface:
         """Members of one section and material share a surface, which takes some hundredths of a second to cut."""

@@ -28,7 +28,7 @@ class Model:
     joints : int
         Points of the rule in each member; the one at a free end needs no joint.
     law : str
-        A name in `sim.member_laws.LAWS`.
+        A name in `sim.laws.LAWS`.
     fibres : int
         Fibres a section, for the fibre law; at least 4.
     dt : float

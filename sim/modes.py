@@ -27,19 +27,10 @@ def natural_modes(joints: Sequence[DuctileJoint]) -> tuple[np.ndarray, dict[pymu
         gradient = np.zeros((3, 3 * len(moving)))
         for body, sign in ((joint.a, -1.0), (joint.b, 1.0)):
             if body in first:
-                gradient[:, first[body] : first[body] + 3] = sign * _rates(joint, body)
+                gradient[:, first[body] : first[body] + 3] = sign * joint.rates_on(body)
         stiffness += gradient.T @ (k + np.triu(k, 1).T) @ gradient
     mass = np.repeat([body.mass for body in moving], 3)
     mass[2::3] = [body.moment for body in moving]
     squares, shapes = eigh(stiffness, np.diag(mass))
     frequencies = np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
     return frequencies, {body: shapes[at : at + 3] for body, at in first.items()}
-
-
-def _rates(joint: DuctileJoint, body: pymunk.Body) -> np.ndarray:
-    """How fast the joint's end on ``body`` moves along its axes and turns, for a unit of vx, vy and ω, (3, 3)."""
-    rest_a, rest_b, turn = joint.geometry[4:7]
-    angle = (1.0 - turn) * (joint.a.angle + rest_a) + turn * (joint.b.angle + rest_b)
-    c, s = np.cos(angle), np.sin(angle)
-    arm = pymunk.Vec2d(*joint.point_on(body)) - body.local_to_world(body.center_of_gravity)
-    return np.array([[c, s, s * arm.x - c * arm.y], [-s, c, c * arm.x + s * arm.y], [0.0, 0.0, 1.0]])

@@ -254,6 +254,26 @@ class Structure:
         return self._result[:, at.RESULT_PLASTIC : at.RESULT_PLASTIC + 4].copy()
 
     @property
+    def elastic_deformation(self) -> np.ndarray:
+        """Deformation that the force explains without viscous damping, (n, 3) [m, m, rad]; 0 in a broken joint."""
+        upper, damping = self._arrays[at.STIFFNESS], self._arrays[at.DAMPING]
+        rates = np.array([joint.rate() for joint in self.joints]) if damping.any() else np.zeros((len(upper), 3))
+        # Where a joint has no stiffness it has no force either.
+        stiffness = upper[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
+        elastic: np.ndarray = np.linalg.pinv(stiffness, hermitian=True) @ (self.force - damping * rates)[:, :, None]
+        return np.where(self.active[:, None], elastic[:, :, 0], 0.0)
+
+    @property
+    def yielding(self) -> np.ndarray:
+        """Whether the axial, shear and rotational part of each joint gave way in the last step, (n, 3) bool."""
+        reach = self._settings[at.STEP] * (self._settings[at.BETA] + self._settings[at.DELTA])
+        viscous = self._arrays[at.DAMPING] / reach if reach > 0.0 else 0.0
+        tangent = self._arrays[at.RESPONSE][:, [at.TANGENT, at.TANGENT + 3, at.TANGENT + 5]] - viscous
+        elastic = self._arrays[at.STIFFNESS][:, [0, 3, 5]]
+        yields: np.ndarray = (tangent < (1.0 - 1e-9) * elastic) & self.active[:, None] & (reach > 0.0)
+        return yields
+
+    @property
     def elastic_energy(self) -> np.ndarray:
         """Elastic energy in each joint, (n,) [J]."""
         return self._result[:, at.RESULT_ELASTIC].copy()

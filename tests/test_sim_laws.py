@@ -26,8 +26,7 @@ FLANGED = Interaction(parse_section("IPE 300"), MATERIAL)
 
 
 def capped() -> ElasticPlastic:
-    c = CAPACITY
-    return ElasticPlastic((c.EA / LENGTH, c.GA_s / LENGTH, c.EI / LENGTH), (c.N_max, c.Q_max, c.M_max))
+    return ElasticPlastic.of_section(CAPACITY, LENGTH)
 
 
 def fibres(hardening: float = 0.0, count: int = 12) -> FibreSection:
@@ -40,7 +39,7 @@ CURVED = parse_material("curve=0.001:210 0.004:260 0.02:330 MPa")
 
 @functools.cache
 def interacting(exact: Interaction = INTERACTION, count: int = 64) -> InteractionPlastic:
-    return InteractionPlastic.of_section(CAPACITY, exact.facets(count), LENGTH)
+    return InteractionPlastic(capped().stiffness, exact.facets(count))
 
 
 class Point:

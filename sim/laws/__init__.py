@@ -12,6 +12,7 @@ from sim.laws.bearing import Bearing
 from sim.laws.elastic_plastic import ElasticPlastic
 from sim.laws.fibre import FibreSection
 from sim.laws.interaction import InteractionPlastic
+from sim.laws.of_section import LAWS, section_law
 from sim.laws.rigid_plastic import RigidPlastic
 
 
@@ -43,4 +44,13 @@ class Law(Protocol):
         """Upper triangle of ∂s/∂q while elastic, row by row; no tangent of the law may exceed it."""
 
 
-__all__ = ["Bearing", "ElasticPlastic", "FibreSection", "InteractionPlastic", "Law", "RigidPlastic"]
+__all__ = [
+    "LAWS",
+    "Bearing",
+    "ElasticPlastic",
+    "FibreSection",
+    "InteractionPlastic",
+    "Law",
+    "RigidPlastic",
+    "section_law",
+]

@@ -5,11 +5,14 @@
 Parameters in memory: k (3), cap (3). State: p (3).
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
 from numba import cfunc
 
+from capacity import Capacity
 from sim.memory import LAW_SIGNATURE, floats
 
 
@@ -63,6 +66,12 @@ class ElasticPlastic:
     yields_by = ("N", "Q", "M")
     respond_address = respond.address
     commit_address = commit.address
+
+    @classmethod
+    def of_section(cls, section: Capacity, length: float) -> ElasticPlastic:
+        """A joint that stands for ``length`` [m] of a member and bears what its section bears."""
+        stiffness = (section.EA / length, section.GA_s / length, section.EI / length)
+        return cls(stiffness, (section.N_max, section.Q_max, section.M_max))
 
     def capacities(self) -> tuple[float, float, float]:
         """N_max [N], Q_max [N] and M_max [N m]."""

@@ -25,7 +25,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numba import cfunc, njit
 
-from capacity import Capacity, FacetSurface
+from capacity import FacetSurface
 from sim.memory import LAW_SIGNATURE, floats
 
 _HEAD = 6
@@ -238,11 +238,6 @@ class InteractionPlastic:
     def __post_init__(self) -> None:
         if min(self.stiffness) <= 0.0:
             raise ValueError(f"stiffness {self.stiffness}: where N, Q and M interact, each needs one above 0")
-
-    @classmethod
-    def of_section(cls, section: Capacity, surface: FacetSurface, length: float) -> InteractionPlastic:
-        """A joint that stands for ``length`` [m] of a member."""
-        return cls((section.EA / length, section.GA_s / length, section.EI / length), surface)
 
     def capacities(self) -> tuple[float, float, float]:
         """N_max [N], Q_max [N] and M_max [N m], each when it acts alone."""

@@ -87,22 +87,33 @@ def as_object(result: Pushover | PlanePush, scene: Scene) -> dict[str, Any]:
         "fields": field_files(result.fields)
         if isinstance(result, PlanePush)
         else push_field_files(scene, result.members, result.displacement),
-        "members": {
+        "members": _members(result),
+    }
+
+
+def _members(result: Pushover | PlanePush) -> dict[str, Any]:
+    if isinstance(result, PlanePush):
+        return {
             name: {
-                "end_forces": member.end_forces[-1].tolist(),
-                "point": member.point.tolist(),
-                "shape": member.shape.tolist(),
-                "station": member.station.tolist(),
-                "axial_force": member.axial_force.tolist(),
-                "moment": member.moment.tolist(),
-                "curvature": member.curvature.tolist(),
-                "plastic_strain": member.plastic_strain.tolist(),
-                "error_estimate": _listed(result.member_errors[name]),
+                "point": axis.point.tolist(),
+                "shape": axis.shape.tolist(),
+                "error_estimate": {"shape": axis.error_estimate},
             }
-            for name, member in result.members.items()
+            for name, axis in result.members.items()
         }
-        if isinstance(result, Pushover)
-        else {},
+    return {
+        name: {
+            "end_forces": member.end_forces[-1].tolist(),
+            "point": member.point.tolist(),
+            "shape": member.shape.tolist(),
+            "station": member.station.tolist(),
+            "axial_force": member.axial_force.tolist(),
+            "moment": member.moment.tolist(),
+            "curvature": member.curvature.tolist(),
+            "plastic_strain": member.plastic_strain.tolist(),
+            "error_estimate": _listed(result.member_errors[name]),
+        }
+        for name, member in result.members.items()
     }
 
 
@@ -120,10 +131,12 @@ def files(found: dict[str, Any], title: str) -> dict[str, str]:
     hinges = [list(hinge.values()) for hinge in found["hinges"]]
     hinge_head = ["node", "member", "position_m", "load", "displacement_m", "error_estimate", "displacement_error_m"]
     sections: list[list[Any]] = []
+    keys = ("axial_force", "moment", "curvature", "plastic_strain")
     for name, member in found["members"].items():
-        keys = ("axial_force", "moment", "curvature", "plastic_strain")
-        columns = [member["station"], *(member[key] for key in keys), *(member["error_estimate"][key] for key in keys)]
-        sections += [[name, *row] for row in zip(*columns, strict=True)]
+        if "station" in member:
+            columns = [member["station"], *(member[key] for key in keys)]
+            columns += [member["error_estimate"][key] for key in keys]
+            sections += [[name, *row] for row in zip(*columns, strict=True)]
     section_head = ["member", "station_m", "N_N", "M_Nm", "curvature_1_per_m", "plastic_strain"]
     section_head += [f"{name}_error" for name in section_head[2:]]
     texts = {

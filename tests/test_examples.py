@@ -12,6 +12,7 @@ EXAMPLES = {
     "03_joints_in_a_space": (-0.80, 0.01),  # rad: work of the load beyond M_max over M_max, see the docstring
     "04_calibrate": (0.67, 0.01),  # % of the peak load
     "05_car_on_ramp": (16.3, 0.5),  # %: the original's own code at the same step
+    "06_plate_with_a_hole": (1.002, 0.001),  # Gaydon & McCrum (1954): 1, which finite elements approach from above
 }
 
 

@@ -180,6 +180,16 @@ def test_a_scene_is_answered_in_plane_stress(turn: float) -> None:
     assert hinge.position == pytest.approx(0.2 if turn else 0.0)
     assert found.energy.error_estimate <= 3e-3
     assert found.residual_error == 0.0
+    # The axis: the root stays, the tip goes along the push, and x, y are the scene's.
+    axis = found.members["beam"]
+    at_tip = int(np.argmin(axis.point) if turn else np.argmax(axis.point))
+    np.testing.assert_allclose(axis.shape[at_tip], 1e-3 * np.array(scene.push_direction()), atol=2e-4)
+    assert axis.shape[at_tip] @ scene.push_direction() == pytest.approx(1e-3, rel=1e-9)
+    assert np.ptp(axis.point) == pytest.approx(0.2)
+    assert 0.0 < axis.error_estimate <= 0.02 * 1e-3
+    assert hinge.displacement_error is not None
+    # The case has 146824 N at 0.69829 mm, where it rises by 51 N/µm to M_pl / L = 146875 N.
+    assert hinge.displacement == pytest.approx(0.69929e-3, abs=hinge.displacement_error + 1e-6)
     np.testing.assert_allclose(
         found.energy.external, found.energy.elastic + found.energy.plastic, atol=1e-9 * found.energy.external[-1]
     )

@@ -66,7 +66,7 @@ def trace(
     unload : bool
         Whether to go back to zero load at the end.
     snapshots : int
-        At how many points, evenly chosen, the whole state is kept.
+        At how many points, evenly chosen, the whole state is kept; always at the last.
     watch : callable
         Told the finished share of the path, 0 to 1.
 
@@ -107,4 +107,6 @@ def trace(
                 record()
     except NotConverged as error:
         points.stopped = str(error)
+        if snapshots and len(points.load) - 1 not in kept:
+            points.snapshots.append((points.displacement[-1], body.state))
     return points

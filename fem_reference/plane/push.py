@@ -12,6 +12,7 @@ from fem_reference.hinge_events import HingeEvent
 from fem_reference.legs import even_legs, resolved_legs
 from fem_reference.plane.bodies import plane_scene
 from fem_reference.plane.continuum import Continuum, State
+from fem_reference.plane.equilibrium import Body
 from fem_reference.plane.path import Trace, trace
 from fem_reference.pushover import Energy
 from scene import Scene
@@ -49,6 +50,25 @@ class Fields:
 
 
 @dataclass(frozen=True)
+class AxisShape:
+    """A member's axis at the end of a path.
+
+    Attributes
+    ----------
+    point : (j,) float
+        From the member's start [m].
+    shape : (j, 2) float
+        Displacements x, y there [m].
+    error_estimate : float
+        Largest difference of any of them from those on the next coarser mesh, times `SAFETY` [m].
+    """
+
+    point: np.ndarray
+    shape: np.ndarray
+    error_estimate: float
+
+
+@dataclass(frozen=True)
 class PlanePush:
     """A load–displacement curve of a plane stress body with its estimated error.
 
@@ -77,6 +97,8 @@ class PlanePush:
     energy : Energy
     imbalance : float
         Largest sum of the out-of-balance forces, over the largest load [-].
+    members : dict[str, AxisShape]
+        The member; none of a mesh.
     fields : Fields
         States on the finest mesh.
     """
@@ -93,6 +115,7 @@ class PlanePush:
     residual_error: float
     energy: Energy
     imbalance: float
+    members: dict[str, AxisShape]
     fields: Fields
 
 
@@ -127,39 +150,43 @@ def plane_push(
     stops = scene.push.stops()
     legs = even_legs(stops, POINTS if len(stops) == 1 else POINTS_A_LEG)
 
-    def solve(level: int, last: bool) -> tuple[Continuum, Trace]:
+    def solve(level: int) -> tuple[Body, Trace]:
         body = found.body(level)
-        path = trace(body, legs, unload=scene.push.unload, snapshots=SNAPSHOTS if last else 0, watch=watch)
-        return body.continuum, path
+        path = trace(body, legs, unload=scene.push.unload, snapshots=SNAPSHOTS if level else 0, watch=watch)
+        return body, path
 
-    _, first = solve(0, False)
+    _, first = solve(0)
     legs = resolved_legs(stops, legs, np.array(first.load))
-    _, coarse = solve(0, False)
+    coarse_body, coarse = solve(0)
     for level in range(1, found.levels):
-        continuum, fine = solve(level, True)
+        body, fine = solve(level)
         error = max(SAFETY * _difference(fine.load, coarse.load), fine.imbalance)
         if error <= tolerance or level == found.levels - 1:
             break
-        coarse = fine
+        coarse_body, coarse = body, fine
+    mesh = body.continuum.mesh
     pairs = ((fine.external, coarse.external), (fine.elastic, coarse.elastic), (fine.plastic, coarse.plastic))
     scale = max(map(abs, fine.external))
     external, elastic, plastic = (np.array(values) for values, _ in pairs)
     load = np.array(fine.load) / found.unit_load
-    kind = "triangles" if continuum.mesh.cells.shape[1] == 6 else "quadrilaterals"
+    kind = "triangles" if mesh.cells.shape[1] == 6 else "quadrilaterals"
     return PlanePush(
         method=f"plane stress continuum, J2 plasticity, quadratic {kind}, small displacements: {found.described}",
         displacement=np.array(fine.displacement),
         load=load,
         error_estimate=error,
-        elements=len(continuum.mesh.cells),
+        elements=len(mesh.cells),
         seconds=time.perf_counter() - started,
-        hinges=_hinges(scene, np.array(fine.displacement), load, found.unit_load, error),
+        hinges=_hinges(scene, fine, coarse, found.unit_load, error),
         outcome=fine.stopped or _outcome(scene, fine),
         residual=fine.displacement[-1],
         residual_error=SAFETY * abs(fine.displacement[-1] - coarse.displacement[-1]),
         energy=Energy(external, elastic, plastic, SAFETY * max(_difference(a, b, scale) for a, b in pairs)),
         imbalance=fine.imbalance,
-        fields=Fields(continuum, tuple(at for at, _ in fine.snapshots), tuple(state for _, state in fine.snapshots)),
+        members=_members(scene, body, coarse_body),
+        fields=Fields(
+            body.continuum, tuple(at for at, _ in fine.snapshots), tuple(state for _, state in fine.snapshots)
+        ),
     )
 
 
@@ -170,24 +197,46 @@ def _difference(fine: list[float], coarse: list[float], scale: float = 0.0) -> f
     return float(np.abs(a - b).max() / (scale or np.abs(a).max())) if both > 1 else 1.0
 
 
-def _hinges(
-    scene: Scene, displacement: np.ndarray, load: np.ndarray, unit: float, error: float
-) -> tuple[HingeEvent, ...]:
+def _members(scene: Scene, fine: Body, coarse: Body) -> dict[str, AxisShape]:
+    found = {}
+    for name in scene.members:
+        c, s, _ = scene.axis(name)
+        (point, shape), (points, shapes) = (_axis(body) for body in (fine, coarse))
+        error = max(float(np.abs(shape[:, i] - np.interp(point, points, shapes[:, i])).max()) for i in (0, 1))
+        found[name] = AxisShape(point, shape @ np.array([[c, s], [-s, c]]), SAFETY * error)
+    return found
+
+
+def _axis(body: Body) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes on a member's axis, from its start, and their displacements along and across it [m]."""
+    points = body.continuum.mesh.points
+    axis = np.flatnonzero(np.abs(points[:, 1]) <= 1e-9 * points[:, 0].max())
+    axis = axis[np.argsort(points[axis, 0])]
+    return points[axis, 0], body.continuum.nodal_displacement(body.state.displacement)[axis]
+
+
+def _hinges(scene: Scene, fine: Trace, coarse: Trace, unit: float, error: float) -> tuple[HingeEvent, ...]:
     if scene.meshed is not None or scene.gravity or scene.loads_of("dead") or len(scene.push.stops()) > 1:
         return ()
     ((name, member),) = scene.members.items()
     c, s, length = scene.axis(name)
     dx, dy = scene.push_direction()
-    lever = abs(dy * c - dx * s) * length
     if abs(dx * c + dy * s) > 1e-9 or any(scene.nodes[scene.push.node].held):
         return ()
-    hinge = member.material.yield_stress * member.section.plastic_modulus / lever / unit
-    if load.max() < hinge:
+    force = member.material.yield_stress * member.section.plastic_modulus / length
+    places = [_first_at(force, path) for path in (fine, coarse)]
+    if places[0] is None:
         return ()
-    k = int(np.argmax(load >= hinge))
-    at = float(np.interp(hinge, load[k - 1 : k + 1], displacement[k - 1 : k + 1]))
     root, place = (member.start, 0.0) if scene.push.node == member.end else (member.end, length)
-    return (HingeEvent(name, place, root, hinge, at, error),)
+    spread = None if places[1] is None else SAFETY * abs(places[0] - places[1])
+    return (HingeEvent(name, place, root, force / unit, places[0], error, spread),)
+
+
+def _first_at(load: float, path: Trace) -> float | None:
+    """The displacement at which a path first comes to ``load`` [m], if it does."""
+    over = np.array(path.load) >= load
+    k = int(np.argmax(over))
+    return float(np.interp(load, path.load[k - 1 : k + 1], path.displacement[k - 1 : k + 1])) if over.any() else None
 
 
 def _outcome(scene: Scene, path: Trace) -> str:

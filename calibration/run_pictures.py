@@ -6,6 +6,8 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from calibration.moving_picture import write_gif, write_mp4
 from calibration.replay import ReferenceShape, replay_page
 from sim.recorded import Recording
@@ -27,16 +29,27 @@ class Camera:
 
     def __init__(self, world: World) -> None:
         self._world, self._last = world, world.time
+        self._pushed = [(world.time, 0.0)]
         self._recorder = Recorder(world.space, sampling_period(world.dt, world.duration), world.labels)
 
     def note(self) -> None:
         """Take note of a step."""
         self._recorder.sample(self._world.time - self._last)
         self._last = self._world.time
+        if self._world.push is not None:
+            self._pushed.append((self._world.time, self._world.push.displacement))
 
     def recording(self) -> Recording:
         """All up to now."""
         return self._recorder.finish(self._world.scene.title)
+
+    @property
+    def pushed(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Times [s], and the pushed node's displacement then [m], if the world has a push."""
+        if self._world.push is None:
+            return None
+        time, displacement = np.array(self._pushed).T
+        return time, displacement
 
 
 def sampling_period(dt: float, duration: float) -> float:

@@ -3,42 +3,75 @@
 import numpy as np
 import pytest
 from cantilevers import cantilever
+from rich.console import Console
 
-from calibration.reference_shape import reference_shape
+from calibration.reference_shape import reference_path, shape_for_replay, way
 from capacity import InputError
-from scene import parse_scene
+from scene import Scene, parse_scene
+
+LENGTH, DISTANCE = 2.0, 0.005
 
 
-def test_a_cantilever_s_reference_ends_where_it_was_pushed() -> None:
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    """Pushed at the tip by half of its deflection at first yield."""
+    return cantilever("rectangle 50x100 mm", LENGTH, DISTANCE)
+
+
+def test_a_cantilever_bends_as_it_is_pushed(scene: Scene) -> None:
     """Elastic, by P at the tip: y(x) = -δ (3 L x² - x³) / 2 L³."""
-    length, distance = 2.0, 0.005
-    (line,) = reference_shape(cantilever("rectangle 50x100 mm", length, distance)).lines
-    x, y = line.T
-    assert (x[0], y[0]) == (0.0, 0.0)
-    assert x[-1] == pytest.approx(length, rel=1e-9)
-    np.testing.assert_allclose(y, -distance * (3 * length * x**2 - x**3) / (2 * length**3), atol=1e-6 * length)
+    path = reference_path(scene)
+    (line,) = path.lines
+    assert path.course[0] == 0.0
+    assert path.course[-1] == pytest.approx(DISTANCE)
+    for so_far, points in zip(path.course, line, strict=True):
+        x, y = points.T
+        assert x[-1] == pytest.approx(LENGTH, rel=1e-9)
+        np.testing.assert_allclose(y, -so_far * (3 * LENGTH * x**2 - x**3) / (2 * LENGTH**3), atol=1e-6 * LENGTH)
 
 
-def test_a_scene_without_a_push_has_none() -> None:
-    scene = parse_scene(
+def test_what_was_kept_is_the_same(scene: Scene) -> None:
+    first, again = reference_path(scene), reference_path(scene)
+    np.testing.assert_array_equal(first.course, again.course)
+    np.testing.assert_array_equal(first.lines[0], again.lines[0])
+
+
+def test_a_way_counts_there_and_back() -> None:
+    np.testing.assert_allclose(way(np.array([0.0, 1.0, -1.0, 0.5])), [0.0, 1.0, 3.0, 4.5])
+
+
+def test_the_shape_keeps_pace_with_the_run(scene: Scene) -> None:
+    """A run that starts after a second, and is at half the distance at 3 s of 5, has the reference there, too."""
+    push = (np.array([0.0, 1.0, 5.0]), np.array([0.0, 0.0, DISTANCE]))
+    shape = shape_for_replay(scene, push, Console(), lambda share: None)
+    assert shape
+    assert shape.time is not None
+    tip = [line[-1, 1] for line in shape.lines[0]]
+    assert np.interp(3.0, shape.time, tip) == pytest.approx(-DISTANCE / 2, rel=1e-6)
+    assert np.interp(5.0, shape.time, tip) == pytest.approx(-DISTANCE, rel=1e-6)
+
+
+def test_a_scene_that_nothing_moves_has_none() -> None:
+    still = parse_scene(
         """
-        title = "falls"
+        title = "still"
         [nodes.root]
         at = [0, 0]
         support = "clamped"
         [nodes.tip]
         at = [1, 0]
-        mass = "5 kg"
-        velocity = ["0 m/s", "-1 m/s"]
         [members.beam]
         from = "root"
         to = "tip"
         section = "rectangle 50x100 mm"
         material = "S235"
-        [motion]
-        duration = "0.1 s"
+        [simulation]
+        duration = "1 s"
         """,
         "test",
     )
-    with pytest.raises(InputError, match="push"):
-        reference_shape(scene)
+    with pytest.raises(InputError):
+        reference_path(still)
+    messages = Console(record=True)
+    assert shape_for_replay(still, None, messages, lambda share: None) is None
+    assert "without the reference's shape" in messages.export_text()

@@ -23,7 +23,7 @@ def simulate(
     gif: Annotated[bool, Parameter(name="--gif", negative=())] = False,
     mp4: Annotated[bool, Parameter(name="--mp4", negative=())] = False,
     live: Annotated[bool, Parameter(name="--live", negative=())] = False,
-    reference: bool = True,
+    reference: bool | None = None,
     output: Folder = None,
     as_json: Json = False,
 ) -> int:
@@ -48,7 +48,7 @@ def simulate(
     live
         Show the run in a window while it goes on; needs the extra "live".
     reference
-        Lay the finite-element reference's shape over the replay of a push.
+        Lay the finite-element reference's shape over the replay; for a push this is done unless told not to.
     output
         Folder for the files; out/SCENE by default.
     as_json
@@ -94,7 +94,10 @@ def simulate(
     if csv:
         files["joints.csv"] = table.text()
     with progress_bar(messages) as watch:
-        shape = shape_for_replay(loaded, messages, lambda share: watch("reference", share)) if reference else None
+        wanted = loaded.pushed is not None if reference is None else reference
+        shape = None
+        if wanted:
+            shape = shape_for_replay(loaded, camera.pushed, messages, lambda share: watch("reference", share))
         watch("drawing", 1.0)
         files |= pictures(camera.recording(), shape, gif, mp4)
     folder.write(files)

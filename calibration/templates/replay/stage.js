@@ -140,15 +140,22 @@ class Stage {
 
   drawReference(pen, { time }) {
     const { lines, time: times } = this.recording.reference;
-    let moment = 0;
-    if (times) moment = Math.max(0, times.findLastIndex((t) => t <= time));
+    // The moments before and after, and the share of the way between them.
+    const before = times ? Math.max(0, times.findLastIndex((t) => t <= time)) : 0;
+    const after = times ? Math.min(before + 1, times.length - 1) : 0;
+    const span = times ? times[after] - times[before] : 0;
+    const share = span > 0 ? Math.min(1, Math.max(0, (time - times[before]) / span)) : 0;
     pen.save();
     pen.strokeStyle = this.palette.reference;
     pen.lineWidth = 1.5;
     pen.setLineDash([6, 4]);
     for (const line of lines) {
       pen.beginPath();
-      line[moment].forEach((point, k) => (k ? pen.lineTo(...this.camera.toScreen(point)) : pen.moveTo(...this.camera.toScreen(point))));
+      line[before].forEach(([x, y], k) => {
+        const [nextX, nextY] = line[after][k];
+        const point = this.camera.toScreen([x + share * (nextX - x), y + share * (nextY - y)]);
+        if (k) pen.lineTo(...point); else pen.moveTo(...point);
+      });
       pen.stroke();
     }
     pen.restore();

@@ -51,7 +51,7 @@ def with_errors(fine: tuple[HingeEvent, ...], coarse: tuple[HingeEvent, ...], sc
     for found in fine:
         event = found
         same = [e for e in coarse if e.node == event.node and (e.node or e.member == event.member)]
-        near = min(same, key=lambda e: abs(e.position - event.position), default=None)
+        near = min(same, key=lambda e: (e.member != found.member, abs(e.position - found.position)), default=None)
         if near is not None:
             load, moved = abs(near.load - event.load) / scale, abs(near.displacement - event.displacement)
             event = replace(event, error_estimate=load, displacement_error=moved)

@@ -61,17 +61,16 @@ def study(
     from calibration.output import OutputFolder
     from calibration.progress import explained_compilation, progress_bar
     from calibration.study.executors import workers
-    from calibration.study.journal import Journal, point_keys
     from scene import load_scene
 
     loaded = load_scene(scene)
     folder = OutputFolder.of_scene(scene, output)
-    journal = Journal(folder.path)
     messages = Console(stderr=True)
     with explained_compilation(messages):
         import sim  # noqa: F401
     from calibration.study import figures
     from calibration.study.choices import read_choices
+    from calibration.study.journal import Journal, point_keys
     from calibration.study.measure import measure
     from calibration.study.outcome import outcome, plain, points_csv
     from calibration.study.page import print_study, study_page
@@ -80,6 +79,7 @@ def study(
     from calibration.tuning import REFERENCE_TOLERANCE
     from fem_reference import pushover
 
+    journal = Journal(folder.path)
     points: list[Point] = [
         *model_points(read_choices(rules, joints, laws, dt, iterations, stock)),
         *(hard_points() if hard_cases else []),

@@ -11,10 +11,10 @@ from calibration.engines.pushing import CurveErrors, Unstable, curve_errors
 from calibration.engines.text import comment
 from calibration.engines.to_pymunk import module_text, push_module
 from calibration.errors import compare
-from calibration.tuning import REFERENCE_TOLERANCE
+from calibration.tuning import REFERENCE_TOLERANCE, push_model
 from fem_reference import Pushover, pushover
 from scene import Scene
-from sim import Model, push_over
+from sim import Model
 
 #: Points of the rule in a member that are tried where the engine can be run, …
 TRIED = (2, 3, 5)
@@ -134,7 +134,7 @@ def _attempts(
 
 def _solved_as_one(scene: Scene, model: Model, reference: Pushover) -> CurveErrors:
     """Errors of the same joints in this project's own solver."""
-    errors = compare(reference, push_over(scene, replace(model, iterations=2), reference.displacement))
+    errors = compare(reference, push_model(scene, replace(model, iterations=2), reference.displacement))
     return CurveErrors(errors.path_max, errors.collapse_load)
 
 

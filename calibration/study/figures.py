@@ -30,7 +30,7 @@ def frontier(study: Outcome) -> Figure:
     """Path error of every model against its processor time; those on the frontier numbered and named beside."""
     best = study.frontier
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(10.5, 5.2), layout="constrained")
+        figure = Figure(figsize=(10.5, 5.8), layout="constrained")
         axes, names = figure.subplots(1, 2, width_ratios=(2.2, 1))
         rules = list(dict.fromkeys(point.model.rule for point, _ in study.models))
         laws = list(dict.fromkeys(point.model.law for point, _ in study.models if point.kind == "ductile"))
@@ -66,16 +66,15 @@ def frontier(study: Outcome) -> Figure:
             lines.append(f"{i}  {point.name}\n    {100.0 * found['path_max']:.2g} %, {1e3 * speed(found):.3g} ms")
         names.axis("off")
         names.text(0.0, 1.0, "On the frontier", va="top", weight="bold", transform=names.transAxes)
-        names.text(0.0, 0.94, "\n".join(lines), va="top", size=7.5, linespacing=1.25, transform=names.transAxes)
+        size = min(7.5, 120.0 / max(1, len(best)))
+        names.text(0.0, 0.95, "\n".join(lines), va="top", size=size, linespacing=1.25, transform=names.transAxes)
         axes.set(xscale="log", yscale="log")
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_formatter(StrMethodFormatter("{x:g}"))
             axis.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.8)))
         axes.set_xlabel("processor time for a simulated second [ms]")
         axes.set_ylabel("path error [% of peak load]")
-        names.legend(
-            *axes.get_legend_handles_labels(), loc="lower left", fontsize=8, title="All marks", alignment="left"
-        )
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=8)
     return figure
 
 

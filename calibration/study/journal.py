@@ -7,12 +7,15 @@ which is cut off when the file is opened again.
 from __future__ import annotations
 
 import hashlib
+import inspect
 import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from calibration.result_cache import content_key
+from calibration import errors, small_displacements
+from calibration.result_cache import REFERENCE_CODE, content_key
+from calibration.study import hard_cases, measure
 from calibration.study.points import Point
 from capacity import InputError
 from scene import Scene
@@ -22,7 +25,8 @@ NAME = "study.jsonl"
 
 def point_keys(scene: Scene, points: Sequence[Point]) -> dict[str, Point]:
     """Each point under a digest of itself, the scene and the code that answers."""
-    content = content_key(scene, packages=("capacity", "scene", "fem_reference", "sim", "calibration"))
+    measuring = [inspect.getsource(module) for module in (measure, hard_cases, errors, small_displacements)]
+    content = content_key(scene, measuring, packages=(*REFERENCE_CODE, "sim", "calibration.engines"))
     return {hashlib.sha256(f"{content} {point!r}".encode()).hexdigest()[:24]: point for point in points}
 
 

@@ -12,9 +12,11 @@ from calibration.engines.to_pymunk import Turn, module_text, push_module
 from calibration.errors import compare
 from calibration.study.hard_cases import let_down
 from calibration.study.points import HardPoint, ModelPoint, Point
+from calibration.tuning import push_model
+from capacity import InputError
 from fem_reference import Pushover
 from scene import Scene
-from sim import SolverError, push_over
+from sim import SolverError
 
 #: Each push is repeated, and the median of its processor times taken: errors do not vary, times do.
 REPEATS = 3
@@ -28,12 +30,12 @@ def measure(scene: Scene, reference: Pushover, point: Point) -> dict[str, Any]:
         if point.kind == "ductile":
             return _ductile(scene, reference, point)
         return _stock(scene, reference, point, point.kind)
-    except (SolverError, Unstable) as error:
+    except (SolverError, Unstable, InputError) as error:  # that a rule does not fit a member is the point's failure
         return {"failure": str(error)}
 
 
 def _ductile(scene: Scene, reference: Pushover, point: ModelPoint) -> dict[str, Any]:
-    pushes = [push_over(scene, point.model, reference.displacement) for _ in range(REPEATS)]
+    pushes = [push_model(scene, point.model, reference.displacement) for _ in range(REPEATS)]
     push = pushes[0]
     errors = compare(reference, push)
     return {

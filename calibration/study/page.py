@@ -27,7 +27,7 @@ def print_study(study: Outcome, console: Console) -> None:
         box=SIMPLE_HEAD,
     )
     for heading in ("model", "bodies", "path", "peak", "ms/s", "µs"):
-        table.add_column(heading, justify="left" if heading == "model" else "right", no_wrap=True)
+        table.add_column(heading, justify="left" if heading == "model" else "right", no_wrap=heading != "model")
     for point, found in best:
         table.add_row(
             point.name,

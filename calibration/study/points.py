@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from fractions import Fraction
 from typing import Any, Literal
 
 from calibration.planner import relative_cost
-from sim import Model
+from sim import LAWS, RULES, Model
 
 #: Ductile joints, or pymunk's own: pivots with gears (rigid until they yield) or with damped rotary springs.
 Kind = Literal["ductile", "gear", "spring"]
 KINDS: tuple[Kind, ...] = ("ductile", "gear", "spring")
 #: Law that stock joints can follow.
 STOCK_LAW = "elastic-plastic"
+#: Joints that a rule has at least, where it is more than 2.
+_FEWEST = {"radau": 6}
 
 
 @dataclass(frozen=True)
@@ -26,18 +29,20 @@ class Choices:
     rules, laws : tuple of str
     joints : tuple of int
         Points of the rule in a member.
+    fibres : tuple of int
+        Fibres a section, where the law has any.
     dt : tuple of float
         [s]
     iterations : tuple of int
-        Of ductile joints; stock joints, which need more, get `stock_iterations`.
     stock : tuple of str
-        Stock joints to compare with: ``"gear"``, ``"spring"``.
+        Stock joints to compare with: ``"gear"``, ``"spring"``; with fewer joints and more iterations, which they need.
     """
 
-    rules: tuple[str, ...] = ("lobatto", "equal")
-    joints: tuple[int, ...] = (2, 3, 4, 5, 6, 8, 10, 14, 20)
-    laws: tuple[str, ...] = ("elastic-plastic", "fibre")
-    dt: tuple[float, ...] = (1 / 60, 1 / 240, 1 / 1000)
+    rules: tuple[str, ...] = RULES
+    joints: tuple[int, ...] = (2, 3, 4, 5, 7, 10, 20)
+    laws: tuple[str, ...] = LAWS
+    fibres: tuple[int, ...] = (8, 16)
+    dt: tuple[float, ...] = (1 / 60, 1 / 240)
     iterations: tuple[int, ...] = (2, 10)
     stock: tuple[str, ...] = ("gear", "spring")
     stock_joints: tuple[int, ...] = (2, 3, 5)
@@ -120,20 +125,19 @@ HARD_STEPS = (1 / 30, 1 / 60, 1 / 120, 1 / 240, 1 / 1000)
 def model_points(choices: Choices) -> list[ModelPoint]:
     """Every combination of the choices that says something new."""
     points = []
-    for rule in choices.rules:
-        for dt in choices.dt:
-            points += [
-                ModelPoint("ductile", Model(rule, joints, law, dt=dt, iterations=iterations))
-                for joints in choices.joints
-                for law in choices.laws
-                for iterations in choices.iterations
-            ]
-            points += [
-                ModelPoint(_kind(stock), Model(rule, joints, STOCK_LAW, dt=dt, iterations=iterations))
-                for stock in choices.stock
-                for joints in choices.stock_joints
-                for iterations in choices.stock_iterations
-            ]
+    for rule, dt in itertools.product(choices.rules, choices.dt):
+        least = _FEWEST.get(rule, 2)
+        joints = [number for number in choices.joints if number >= least]
+        points += [
+            ModelPoint("ductile", Model(rule, number, law, fibres, dt, iterations))
+            for number, law, iterations in itertools.product(joints, choices.laws, choices.iterations)
+            for fibres in (choices.fibres if law == "fibre" else (Model.fibres,))
+        ]
+        joints = [number for number in choices.stock_joints if number >= least]
+        points += [
+            ModelPoint(_kind(stock), Model(rule, number, STOCK_LAW, dt=dt, iterations=iterations))
+            for stock, number, iterations in itertools.product(choices.stock, joints, choices.stock_iterations)
+        ]
     return list(dict.fromkeys(points))
 
 

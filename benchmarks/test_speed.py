@@ -1,7 +1,5 @@
 """Speed of the main parts; run with ``pytest benchmarks``. Compare within one run: machines differ and drift."""
 
-import math
-
 import numpy as np
 import pymunk
 import pytest
@@ -53,27 +51,6 @@ def test_elastic_chain_step(benchmark: BenchmarkFixture, pieces: int) -> None:
     benchmark(run)
     benchmark.extra_info["microseconds_per_joint_step"] = 1e6 * benchmark.stats.stats.median / (steps * pieces)
     assert structure.unconverged == 0
-
-
-def test_stock_pymunk_joints(benchmark: BenchmarkFixture) -> None:
-    """The same 50 pieces with pivot and gear joints at 10 iterations: not the same answer, but a measure of cost."""
-    space = pymunk.Space()
-    space.gravity, space.iterations = (0.0, -9.81), 10
-    last = space.static_body
-    for i in range(50):
-        body = pymunk.Body(3.12, 3.12 * 0.04**2 / 12)
-        body.position = (0.04 * i + 0.02, 0.0)
-        pivot, gear = pymunk.PivotJoint(last, body, (0.04 * i, 0.0)), pymunk.GearJoint(last, body, 0.0, 1.0)
-        space.add(body, pivot, gear)
-        last = body
-
-    def run() -> None:
-        for _ in range(40):
-            space.step(1 / 60)
-
-    benchmark(run)
-    benchmark.extra_info["microseconds_per_joint_step"] = 1e6 * benchmark.stats.stats.median / (40 * 50)
-    assert math.isfinite(last.position.y)
 
 
 def test_reference_pushover(benchmark: BenchmarkFixture) -> None:

@@ -81,14 +81,20 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         From where a continuous body first touches something, steps are cut into equal parts, so that it travels no
         further than this in one [m].
     rule : str
-        Where the joints of a member go: ``"lobatto"`` points or ``"equal"`` pieces.
+        Where the joints of a member go: ``"lobatto"`` points, ``"equal"`` pieces, or ``"radau"``, hinges of a chosen
+        length at both ends.
     joints : int
         Points of the rule in each member.
     joint_damping : Duration
         Viscous damping of the members' joints over their stiffness [s]: a vibration at ω has the damping ratio
         ω joint_damping / 2.
     law : str
-        Of a member's joints: ``"elastic-plastic"`` or ``"fibre"``.
+        Of a member's joints: ``"rigid-plastic"``, ``"elastic-plastic"``, ``"interaction"`` of N, Q and M, or
+        ``"fibre"`` section.
+    fibres : int
+        In a section, for the fibre law.
+    hinge_length : Length, optional
+        For the rule ``"radau"`` [m]; by default the depth of each section.
     """
 
     duration: Duration | None = None
@@ -99,7 +105,9 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     numerical_damping: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.02
     collision_slop: Length = si(1e-3)
     largest_travel: Length | None = None
-    rule: Literal["lobatto", "equal"] = "lobatto"
+    rule: Literal["lobatto", "equal", "radau"] = "lobatto"
     joints: Annotated[int, msgspec.Meta(ge=2)] = 5
     joint_damping: Duration = si(0.0)
-    law: Literal["elastic-plastic", "fibre"] = "elastic-plastic"
+    law: Literal["rigid-plastic", "elastic-plastic", "interaction", "fibre"] = "elastic-plastic"
+    fibres: Annotated[int, msgspec.Meta(ge=4)] = 8
+    hinge_length: Length | None = None

@@ -58,8 +58,12 @@ def _check_names(scene: Scene) -> None:
 
 def _check_programme(scene: Scene, simulation: Simulation) -> None:
     _positive(simulation.dt, "simulation.dt", '"1/60 s"')
-    if simulation.gravity_ramp < 0.0:
-        raise InputError("simulation.gravity_ramp", "it is negative", 'write a time such as "4 s"')
+    _positive(simulation.hinge_length, "simulation.hinge_length", '"0.3 m"')
+    if simulation.rule == "radau" and simulation.joints < 6:
+        raise InputError("simulation.joints", f"{simulation.joints} are too few for that rule", "write 6 or more")
+    for key in ("gravity_ramp", "joint_damping"):
+        if getattr(simulation, key) < 0.0:
+            raise InputError(f"simulation.{key}", "it is negative", "take it out, or write a time")
     _positive(simulation.collision_slop, "simulation.collision_slop", '"1 mm"')
     _positive(simulation.largest_travel, "simulation.largest_travel", '"1 mm"')
     gives_its_own = scene.pushed is not None or scene.motion is not None

@@ -92,9 +92,16 @@ class World:
             name: (joint,) for name, joint in add_joints(scene, space, self.bodies, scheme).items()
         }
         self.cars: dict[str, Car] = add_vehicles(scene, space)
-        self._assembly = self._add_members(
-            Model(run.rule, run.joints, run.law, damping=run.joint_damping, scheme=scheme)
+        model = Model(
+            run.rule,
+            run.joints,
+            run.law,
+            fibres=run.fibres,
+            damping=run.joint_damping,
+            scheme=scheme,
+            hinge_length=run.hinge_length,
         )
+        self._assembly = self._add_members(model)
         self._loads = None if self._assembly is None else LoadProgramme(scene, self._assembly)
         self.push = self._start_push()
         self._start_motion()
@@ -128,11 +135,12 @@ class World:
         return PrescribedPush(self.scene, self._assembly)
 
     def _start_motion(self) -> None:
-        """From rest under dead loads, where something bears them, with the velocities that the scene's motion says."""
-        if self.scene.motion is not None and self._assembly is not None:
-            if is_supported(self.scene):
+        """At rest under dead loads, unless the members fall, with the velocities that the scene's motion says."""
+        motion = self.scene.motion
+        if motion is not None and self._assembly is not None:
+            if is_supported(self.scene) and not any(motion.velocity):
                 settle(self.scene, self._assembly, _REST)
-            set_going(self.scene, self.scene.motion, self._assembly)
+            set_going(self.scene, motion, self._assembly)
 
     def _duration(self, run: Simulation, wanted: float | None) -> float:
         if self.push is not None:

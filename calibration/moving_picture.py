@@ -29,6 +29,8 @@ _SEGMENTS_A_QUARTER = 8
 _MARGIN = 0.06
 # Everything may be so many times as large as the structure to be shown.
 _FAR = 4.0
+# What is near the structure, beside it and above or below, over its size.
+_NEAR = np.array([1.0, 0.4])
 # Share of positions on either side that may lie outside the picture.
 _STRAYED = 0.02
 _FRAMES_A_SECOND = 20
@@ -84,7 +86,8 @@ class Picture:
         self._joints.set_offsets(places[~broken])
         self._joints.set_array(recording.utilisation[k].max(axis=1, initial=0.0)[~broken])
         self._broken.set_offsets(places[broken])
-        self._caption.set_text(f"{recording.time[k]:.2f} s{note}")
+        digits = 2 if recording.time[-1] >= 1.0 else 4
+        self._caption.set_text(f"{recording.time[k]:.{digits}f} s{note}")
 
     def _joint_places(self, k: int) -> np.ndarray:
         places = [
@@ -104,7 +107,7 @@ class Picture:
             near = _span(structure)
             size = float((near[1] - near[0]).max())
             if 0.0 < _FAR * size < float((high - low).max()):
-                low, high = near[0] - size, near[1] + size
+                low, high = near[0] - size * _NEAR, near[1] + size * _NEAR
         margin = _MARGIN * (high - low).max()
         return low - margin, high + margin
 

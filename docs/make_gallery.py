@@ -29,7 +29,15 @@ cross marks a broken one. The replay that each run leaves shows the rest: forces
 Made by `python docs/make_gallery.py`.
 """
 # Moments worth a look [s]; others are shown at their end.
-MOMENTS = {"car-on-ramp": 11.0, "charpy": 0.012, "post-impact": 0.08}
+MOMENTS = {
+    "bridge": 15.5,
+    "car-on-ramp": 11.0,
+    "charpy": 0.012,
+    "demolisher": 9.0,
+    "gate": 8.0,
+    "multifloor-frame": 0.2,
+    "post-impact": 0.08,
+}
 
 
 def part(name: str) -> str:

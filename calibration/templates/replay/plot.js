@@ -68,7 +68,11 @@ class Plot {
     pen.textBaseline = "alphabetic";
     pen.textAlign = "center";
     const marks = ticks(0, this.duration, Math.max(2, Math.floor(this.innerWidth / 70)));
-    for (const mark of marks) pen.fillText(`${Number(mark.toPrecision(6))}${mark === marks.at(-1) ? " s" : ""}`, this.x(mark), this.height - 3);
+    for (const mark of marks) {
+      const text = `${Number(mark.toPrecision(6))}${mark === marks.at(-1) ? " s" : ""}`;
+      const half = pen.measureText(text).width / 2;
+      pen.fillText(text, Math.min(this.x(mark), this.canvas.clientWidth - half - 1), this.height - 3);
+    }
     pen.textAlign = "left";
     pen.fillStyle = palette.ink;
     pen.font = "600 11px system-ui, sans-serif";

@@ -28,7 +28,7 @@ class Stage {
   fit() {
     const [x0, y0, x1, y1] = this.structureBounds, size = Math.max(x1 - x0, y1 - y0);
     const all = Math.max(this.bounds[2] - this.bounds[0], this.bounds[3] - this.bounds[1]);
-    if (size > 0 && all > FAR * size) this.camera.fit([x0 - size, y0 - size, x1 + size, y1 + size]);
+    if (size > 0 && all > FAR * size) this.camera.fit([x0 - size, y0 - 0.4 * size, x1 + size, y1 + 0.4 * size]);
     else this.camera.fit(this.bounds);
   }
 

@@ -12,8 +12,9 @@ is left is one equation for Q = Q_max sin φ, increasing in Q, solved by Newton'
 
     (Q - Q_t) / k_Q + Σ λ_k w_k · Q / (Q_max² r) = 0.
 
-Parameters in memory: k_N, k_Q, k_M, Q_max, what counts as rounding in a facet's inequality, number of facets n; then a,
-b, f, w of each, one list after another, by direction in (√k_N N, √k_M M) and scaled so that a² k_N + b² k_M = 1.
+Parameters in memory: k_N, k_Q, k_M, Q_max, what counts as rounding in a facet's inequality, number of facets n, N_max,
+M_max; then a, b, f, w of each facet, one list after another, by direction in (√k_N N, √k_M M) and scaled so that
+a² k_N + b² k_M = 1.
 State: plastic deformation (3).
 """
 
@@ -28,7 +29,7 @@ from numba import cfunc, njit
 from capacity import FacetSurface
 from sim.memory import LAW_SIGNATURE, floats
 
-_HEAD = 6
+_HEAD = 8
 _ROUNDING = 1e-12
 _ANGLE = 1e-14
 
@@ -132,8 +133,10 @@ def force(head, facets, n, p, q, s):  # type: ignore[no-untyped-def]
     """Write the force at q to s; returns r, Σ λ w and the facets at work (-1 for none)."""
     kN, kQ, kM, Q_max = head[0], head[1], head[2], head[3]
     N, Q, M = kN * (q[0] - p[0]), kQ * (q[1] - p[1]), kM * (q[2] - p[2])
-    phi, i, j, li, lj = project(head, facets, n, N, abs(Q), M)
     s[0], s[1], s[2] = N, Q, M
+    if abs(N) / head[6] + abs(Q) / Q_max + abs(M) / head[7] < 1.0:  # between the axes' ends a convex surface bulges
+        return 1.0, 0.0, -1, -1
+    phi, i, j, li, lj = project(head, facets, n, N, abs(Q), M)
     if i < 0 and abs(Q) <= Q_max:
         return math.cos(phi), 0.0, -1, -1
     s[1] = math.copysign(Q_max * math.sin(phi), Q)
@@ -253,7 +256,8 @@ class InteractionPlastic:
         size = np.hypot(scaled[:, 0], scaled[:, 1])
         a, b, f, w = (row / size for row in (*surface.normals.T, surface.fixed, surface.walls))
         rounding = _ROUNDING * float((f + w).max())
-        head = [kN, kQ, kM, surface.Q_max, rounding, float(len(order))]
+        N_max, _, M_max = self.capacities()
+        head = [kN, kQ, kM, surface.Q_max, rounding, float(len(order)), N_max, M_max]
         return np.concatenate([head, a[order], b[order], f[order], w[order]])
 
     def state(self) -> np.ndarray:

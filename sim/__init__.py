@@ -4,6 +4,7 @@ from sim import chipmunk
 
 chipmunk.verify()
 
+from sim.energy import Energy, energy  # noqa: E402
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits  # noqa: E402  (nothing may run on structs that do not fit)
 from sim.joint_arrays import JointArrays  # noqa: E402
 from sim.laws import LAWS, Bearing, ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic, section_law  # noqa: E402
@@ -26,6 +27,7 @@ __all__ = [
     "Course",
     "DuctileJoint",
     "ElasticPlastic",
+    "Energy",
     "FibreSection",
     "InteractionPlastic",
     "JointArrays",
@@ -42,6 +44,7 @@ __all__ = [
     "SolverError",
     "Structure",
     "assemble",
+    "energy",
     "equal",
     "follow",
     "lobatto",

@@ -29,7 +29,7 @@ CENTRE = 6
 # Beyond what every kernel reads: pseudo-velocities that take out overlap, and the list of contacts.
 BIAS_VX, BIAS_SPIN = 24, 26
 BODY_SPACE = 27
-ARBITERS = 29
+ARBITERS, CONSTRAINTS = 29, 30
 BODY_FULL_WORDS = 31
 
 # cpSpace: how much shapes may overlap.
@@ -46,15 +46,17 @@ ARBITER_WORDS = 17
 CONTACT_R1, CONTACT_R2 = 0, 2
 CONTACT_NORMAL_MASS, CONTACT_TANGENT_MASS, CONTACT_BOUNCE = 4, 5, 6
 CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE = 7, 8
-CONTACT_BIAS = 10
+CONTACT_BIAS, CONTACT_HASH = 10, 11
 CONTACT_WORDS, CONTACT_BYTES = 12, 96
 
 # In cpConstraint: the function table first; the first words past its end belong to the kind of joint, here a pivot
 # joint's anchors, which nobody reads once its functions are replaced.
-_CLASS = 0
+CONSTRAINT_CLASS = 0
 CONSTRAINT_SPACE = 1
-_BODY_A, _BODY_B = 2, 3
+CONSTRAINT_BODY_A, _BODY_B = 2, 3
+CONSTRAINT_NEXT_A, CONSTRAINT_NEXT_B = 4, 5
 CONTROL = 13
+CONSTRAINT_WORDS = 15
 
 
 class IncompatiblePymunk(ImportError):
@@ -93,13 +95,30 @@ def adopt(constraint: object, functions: np.ndarray, after_step: int) -> None:
     after_step : int
         Address of a function (constraint, space) called when a step's impulses are final.
     """
-    words(address(constraint), 1, np.int64)[_CLASS] = functions.ctypes.data
+    words(address(constraint), 1, np.int64)[CONSTRAINT_CLASS] = functions.ctypes.data
     lib.cpConstraintSetPostSolveFunc(constraint, ffi.cast("cpConstraintPostSolveFunc", after_step))
 
 
 def assign(constraint: object, control: np.ndarray, index: int) -> None:
     """Give a constraint's functions their control table, which must outlive it, and its place in that."""
     words(address(constraint), CONTROL + 2, np.int64)[CONTROL:] = control.ctypes.data, index
+
+
+def hand_back(contact: int) -> None:
+    """Have Chipmunk, or the next structure that looks, solve the contact at an address again."""
+    words(contact, CONTACT_WORDS)[CONTACT_NORMAL_MASS] = 1.0
+
+
+def save_body(body: pymunk.Body) -> np.ndarray:
+    """A body's numbers to the last bit, with those that pymunk does not save: transform and pseudo-velocities."""
+    raw = words(body_address(body), BODY_FULL_WORDS)
+    return np.concatenate([raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1]])
+
+
+def restore_body(body: pymunk.Body, saved: np.ndarray) -> None:
+    """Put back what `save_body` gave."""
+    raw = words(body_address(body), BODY_FULL_WORDS)
+    raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1] = saved[: BODY_WORDS - MASS], saved[BODY_WORDS - MASS :]
 
 
 def verify() -> None:
@@ -133,9 +152,15 @@ def verify() -> None:
     fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[BODY_SPACE] == address(space._space)
     fits &= words(address(space._space), SPACE_WORDS)[SPACE_SLOP] == 43.0
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == address(space._space)
+    fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[CONSTRAINTS] == location
+    second = pymunk.PivotJoint(other, body, (0.0, 0.0))
+    space.add(second)
+    after = words(address(second._constraint), CONTROL, np.int64)
+    fits &= after[CONSTRAINT_NEXT_A] == location and after[CONSTRAINT_NEXT_B] == location
+    space.remove(second)
     space.remove(joint)
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == 0
-    fits &= bodies[_BODY_A] == body_address(body) and bodies[_BODY_B] == body_address(other)
+    fits &= bodies[CONSTRAINT_BODY_A] == body_address(body) and bodies[_BODY_B] == body_address(other)
     if not fits:
         raise IncompatiblePymunk(
             f"pymunk {pymunk.version} lays out its bodies or constraints in a way that sim does not know; "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymunk
@@ -121,9 +121,33 @@ class DuctileJoint(pymunk.Constraint):
                 raise ValueError(f"the joint has a {what} that is not finite")
         self._structure: Structure | None = None
         self._index = 0
+        self._attach(a, b)
+        self.ask_for_structure()
+
+    def _attach(self, a: pymunk.Body, b: pymunk.Body) -> None:
+        """Become a constraint of Chipmunk's between two bodies."""
         self._init(a, b, chipmunk.pivot(a, b))
         chipmunk.adopt(self._constraint, FUNCTIONS, AFTER_STEP)
-        self.ask_for_structure()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """For `pickle`, `copy` and `pymunk.Space.copy`: all attributes, with the structure and its plastic state."""
+        return {
+            "bodies": (self.a, self.b),
+            "own": {name: value for name, value in vars(self).items() if not name.startswith("_")},
+            "place": (self._structure, self._index),
+            "collide_bodies": self.collide_bodies,
+            "asks": self.pre_solve is not None,
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state["own"])
+        self._structure, self._index = state["place"]
+        self._attach(*state["bodies"])
+        self.collide_bodies = state["collide_bodies"]
+        if self._structure is not None:
+            self._structure.restore_joint()
+        if state["asks"]:
+            self.ask_for_structure()
 
     @classmethod
     def by_frequency(
@@ -188,7 +212,7 @@ class DuctileJoint(pymunk.Constraint):
 
     def ask_for_structure(self) -> None:
         """Have the joints of its space grouped into structures anew at the start of the next step."""
-        from sim.structure import group
+        from sim.grouping import group
 
         self.pre_solve = group
 

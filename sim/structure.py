@@ -1,25 +1,23 @@
-"""Structures: joints that share bodies, and the memory in which they are solved together."""
+"""Structures: joints that share bodies, solved together."""
 
 from __future__ import annotations
 
-import ctypes
-import itertools
 from collections.abc import Sequence
-from weakref import WeakValueDictionary
+from typing import Any
 
 import numpy as np
 import pymunk
 
 from sim import chipmunk
+from sim.energy import Energy
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
-from sim.kernels.contacts import PLACE_WORDS, TOUCH_WORDS, hash_table
 from sim.laws import Law
+from sim.notices import listen
 from sim.ordering import minimum_degree
+from sim.tables import Tables
 
 _TOLERANCE = 1e-9
-# Points of contact that a new structure has room for; more is made when needed.
-_ROOM = 8
 
 
 class SolverError(RuntimeError):
@@ -30,7 +28,7 @@ class Structure:
     """Joints that are solved as one; views of what they bear, as arrays over the joints.
 
     Made by itself in the first step of a space (see `DuctileJoint.structure`), or from joints at hand to have the
-    arrays before.
+    arrays before. It is saved and copied along with the space that it is in.
 
     Parameters
     ----------
@@ -45,109 +43,34 @@ class Structure:
         When there is no joint, or the joints do not have the same time integration.
     """
 
+    #: Bodies of the structure: dynamic ones in order of elimination, then the others.
+    bodies: tuple[pymunk.Body, ...]
+    # While it is restored: what was saved, and how many joints are back.
+    _saved: dict[str, Any] | None = None
+    _restored = 0
+
     def __init__(self, joints: Sequence[DuctileJoint], tolerance: float = _TOLERANCE) -> None:
         if not joints:
             raise ValueError("a structure needs at least one joint")
         if len({joint.scheme for joint in joints}) > 1:
             raise ValueError("the joints of a structure must have the same time integration scheme")
-        self.joints = tuple(joints)
+        self._build(tuple(joints), tolerance)
+        self._take_over()
+
+    def _build(self, joints: tuple[DuctileJoint, ...], tolerance: float) -> None:
+        """Find an order of elimination, and lay out the memory."""
+        self.joints, self._tolerance = joints, tolerance
         bodies = list(dict.fromkeys(body for joint in self.joints for body in (joint.a, joint.b)))
         moving = [body for body in bodies if body.body_type == pymunk.Body.DYNAMIC]
         held = [body for body in bodies if body.body_type != pymunk.Body.DYNAMIC]
         index = {body: i for i, body in enumerate(moving)}
         pairs = [(index[j.a], index[j.b]) for j in self.joints if j.a in index and j.b in index]
-        self._pattern = minimum_degree(len(moving), pairs)
-        #: Bodies of the structure: dynamic ones in order of elimination, then the others.
-        self.bodies = tuple([moving[i] for i in self._pattern.order] + held)
-        self._lay_out(len(moving), tolerance)
-        self._take_over()
-
-    def _lay_out(self, moving: int, tolerance: float) -> None:
-        """All memory that the kernels work on, and the control table that points to it."""
-        n, joints, pattern = len(self.joints), self.joints, self._pattern
-        index = {body: i for i, body in enumerate(self.bodies)}
-        ends = np.array([[index[j.a], index[j.b]] for j in joints], dtype=np.int64)
-        slots = [pattern.slot(max(e), min(e)) if max(e) < moving else -1 for e in ends.tolist()]
-        parameters = [np.ascontiguousarray(j.law.parameters(), dtype=float) for j in joints]
-        states = [np.ascontiguousarray(j.law.state(), dtype=float) for j in joints]
-        self._parameters, self._parameter_ends = _joined(parameters)
-        self._states, self._state_ends = _joined(states)
-        laws = np.empty((n, 5), dtype=np.int64)
-        laws[:, 0] = [j.law.respond_address for j in joints]
-        laws[:, 1] = [j.law.commit_address for j in joints]
-        laws[:, 2] = self._parameters.ctypes.data + 8 * self._parameter_ends[:-1]
-        laws[:, 3] = self._states.ctypes.data + 8 * self._state_ends[:-1]
-        laws[:, 4] = np.diff(self._state_ends)
-        limits = [(j.limits.elongation, j.limits.slip, j.limits.rotation, j.limits.compression_counts) for j in joints]
-        below = len(pattern.column_rows)
-        keys, values = hash_table([chipmunk.body_address(body) for body in self.bodies])
-        self._settings = np.zeros(at.SETTINGS_WORDS)
-        self._settings[[at.BETA, at.DELTA]] = joints[0].scheme
-        self._settings[at.TOLERANCE] = tolerance**2
-        self._result = np.zeros((n, at.RESULT_WORDS))
-        self._active = np.ones(n, dtype=np.int64)
-        self._arrays: dict[int, np.ndarray] = {
-            at.BODY_AT: np.array([chipmunk.body_address(body) for body in self.bodies], dtype=np.int64),
-            at.JOINT_AT: np.array([chipmunk.address(j._constraint) for j in joints], dtype=np.int64),
-            at.JOINT_BODIES: ends,
-            at.GEOMETRY: np.array([j.geometry for j in joints]),
-            at.LAWS: laws,
-            at.STIFFNESS: np.array([j.law.elastic_tangent() for j in joints]),
-            at.DAMPING: np.array([j.damping for j in joints], dtype=float),
-            at.LIMITS: np.array(limits, dtype=float),
-            at.SCALE: np.ones(n),
-            at.SCRATCH: np.zeros(laws[:, 4].max()),
-            at.ACTIVE: self._active,
-            at.COLUMN_START: pattern.column_start,
-            at.COLUMN_ROWS: pattern.column_rows,
-            at.FILL_TARGETS: np.append(pattern.fill_targets, 0),
-            at.JOINT_SLOT: np.array(slots, dtype=np.int64),
-            at.SETTINGS: self._settings,
-            at.JACOBIAN: np.zeros((n, 18)),
-            at.DEFORMATION: np.zeros((n, 3)),
-            at.LIGHTNESS: np.zeros((n, 3)),
-            at.IMPULSE: np.zeros((n, 3)),
-            at.RESIDUAL: np.zeros((n, 3)),
-            at.SLOPE: np.zeros((n, 3)),
-            at.RESPONSE: np.zeros((n, at.RESPONSE_WORDS)),
-            at.VELOCITY: np.zeros((len(self.bodies), 3)),
-            at.START_VELOCITY: np.zeros((len(self.bodies), 3)),
-            at.LAST_VELOCITY: np.zeros((len(self.bodies), 3)),
-            at.SOLUTION: np.zeros((len(self.bodies), 3)),
-            at.DIAGONAL: np.zeros((moving, 9)),
-            at.LOWER_BLOCKS: np.zeros((below, 9)),
-            at.SCALED_BLOCKS: np.zeros((below, 9)),
-            at.RESULT: self._result,
-            at.PATTERN: np.zeros((len(self.bodies), 3)),
-            at.IMAGE: np.zeros((len(self.bodies), 3)),
-            at.BODY_KEYS: keys,
-            at.BODY_VALUES: values,
-        }
-        self._control = np.zeros(at.CONTROL_WORDS, dtype=np.int64)
-        self._control[[at.BODIES, at.MOVING, at.JOINTS, at.LOWER]] = len(self.bodies), moving, n, below
-        self._control[at.FAULT] = -1
-        self._control[at.BREAKABLE] = int(np.isfinite(self._arrays[at.LIMITS][:, :3]).any())
-        self._control[at.NOTICE] = int(ctypes.cast(_notice, ctypes.c_void_p).value or 0)
-        self._control[at.KEY] = next(_keys)
-        _structures[int(self._control[at.KEY])] = self
-        self._control[at.HASH_LENGTH] = len(keys)
-        for word, array in self._arrays.items():
-            self._control[word] = array.ctypes.data
-        self._make_room(_ROOM)
-
-    def _make_room(self, contacts: int) -> None:
-        """Memory for so many points of contact."""
-        new = {
-            at.PLACES: np.zeros((contacts, PLACE_WORDS), dtype=np.int64),
-            at.TOUCHES: np.zeros((contacts, TOUCH_WORDS)),
-            at.OPERATOR: np.zeros((2 * contacts, 2 * contacts)),
-            at.CONTACT_VELOCITY: np.zeros(2 * contacts),
-            at.CONTACT_CHANGE: np.zeros(2 * contacts),
-        }
-        self._arrays |= new
-        for word, array in new.items():
-            self._control[word] = array.ctypes.data
-        self._control[at.ROOM] = contacts
+        pattern = minimum_degree(len(moving), pairs)
+        self.bodies = tuple([moving[i] for i in pattern.order] + held)
+        self._tables = Tables(joints, self.bodies, pattern, tolerance)
+        self._control = self._tables.control
+        self._control[[at.NOTICE, at.KEY]] = listen(self)
+        self._settings, self._result = self._tables[at.SETTINGS], self._tables[at.RESULT]
 
     def _take_over(self) -> None:
         """Make the joints this structure's, with the plastic state they had in another.
@@ -155,25 +78,80 @@ class Structure:
         Bodies that were in another structure, or are joined to one or to a kinematic body, keep moving as they do; a
         structure that is new and tied to the world at most begins to move with its first step.
         """
-        moved = {
-            body: old._arrays[at.LAST_VELOCITY][i]
-            for old in {joint.structure for joint in self.joints if joint.structure is not None}
-            for i, body in enumerate(old.bodies)
-        }
+        olds = {joint.structure: None for joint in self.joints if joint.structure is not None}
+        moved: dict[pymunk.Body, np.ndarray] = {}
+        for old in olds:
+            moved |= dict(zip(old.bodies, old._let_go(), strict=True))
+        last = self._tables[at.LAST_VELOCITY]
         if moved or any(body.body_type == pymunk.Body.KINEMATIC for body in self.bodies):
             for i, body in enumerate(self.bodies):
-                present = (*body.velocity, body.angular_velocity)
-                self._arrays[at.LAST_VELOCITY][i] = moved.get(body, present)
+                last[i] = moved.get(body, (*body.velocity, body.angular_velocity))
         for i, joint in enumerate(self.joints):
-            old = joint.structure
-            if old is not None:
-                k = joint.index
-                self._result[i] = old._result[k]
-                self._active[i] = old._active[k]
-                first, last = old._state_ends[k : k + 2]
-                self._states[self._state_ends[i] : self._state_ends[i + 1]] = old._states[first:last]
-            joint.join(self, i)
-            chipmunk.assign(joint._constraint, self._control, i)
+            if joint.structure is not None:
+                old, k = joint.structure._tables, joint.index
+                self._result[i] = old[at.RESULT][k]
+                self._tables[at.ACTIVE][i] = old[at.ACTIVE][k]
+                self._tables.state(i)[:] = old.state(k)
+            self._adopt(i)
+        ledger = self._tables[at.LEDGER]
+        mass = [(b.mass, b.mass, b.moment) for b in self.bodies if b.body_type == pymunk.Body.DYNAMIC]
+        moving = last[: len(mass)]
+        ledger[at.LEDGER_KINETIC] = 0.5 * np.sum(np.array(mass) * moving**2, where=moving != 0.0)
+        ledger[at.LEDGER_ELASTIC] = self.elastic_energy.sum()
+        ledger[at.LEDGER_EXTERNAL] = ledger[at.LEDGER_KINETIC] + ledger[at.LEDGER_ELASTIC]
+
+    def _adopt(self, index: int) -> None:
+        joint = self.joints[index]
+        joint.join(self, index)
+        chipmunk.assign(joint._constraint, self._control, index)
+
+    def _let_go(self) -> np.ndarray:
+        """Velocities that the bodies were moved with, for a structure that takes over their joints.
+
+        In a step that has begun, the contacts go back to Chipmunk, and impulses since the last step have been seen to.
+        """
+        if not self._control[at.LEADER]:
+            return self._tables[at.LAST_VELOCITY]
+        self._control[at.LEADER] = 0
+        for place in self._tables[at.PLACES][: self._control[at.CONTACTS]]:
+            chipmunk.hand_back(int(place[at.WHERE]))
+        return self._tables[at.START_VELOCITY]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is needed to go on from here: joints, and what they and their space do not say."""
+        space = self.bodies[0].space
+        neighbours = self.bodies if space is None else tuple(space.bodies)
+        return {
+            "joints": self.joints,
+            "tolerance": self._tolerance,
+            "kept": self._tables.kept(),
+            "raw": [(body, chipmunk.save_body(body)) for body in neighbours],
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._saved = state
+        self._complete()
+
+    def restore_joint(self) -> None:
+        """One more of the structure's joints has been restored; called by the joint."""
+        self._restored += 1
+        self._complete()
+
+    def _complete(self) -> None:
+        """Go on from the saved state, once it and all joints are back, in whichever order they came."""
+        state = self._saved
+        if state is None or self._restored < len(state["joints"]):
+            return
+        del self._saved, self._restored
+        for body, raw in state["raw"]:
+            chipmunk.restore_body(body, raw)
+        self._build(tuple(state["joints"]), state["tolerance"])
+        self._tables.restore(state["kept"])
+        for i, joint in enumerate(self.joints):
+            asks = joint.pre_solve is not None
+            self._adopt(i)
+            if asks:
+                joint.ask_for_structure()
 
     def change_law(self, joint: int, law: Law) -> None:
         """Give a joint new numbers for the law it has; its plastic state stays.
@@ -184,11 +162,11 @@ class Structure:
             When ``law`` is of another kind or size.
         """
         values = law.parameters()
-        first, last = self._parameter_ends[joint : joint + 2] if joint >= 0 else self._parameter_ends[joint - 1 :][:2]
-        if type(law) is not type(self.joints[joint].law) or len(values) != last - first:
+        parameters = self._tables.parameters(joint % len(self.joints))
+        if type(law) is not type(self.joints[joint].law) or len(values) != len(parameters):
             raise ValueError(f"joint {joint} has a law of another kind or size")
-        self._parameters[first:last] = values
-        self._arrays[at.STIFFNESS][joint] = law.elastic_tangent()
+        parameters[:] = values
+        self._tables[at.STIFFNESS][joint] = law.elastic_tangent()
         self.joints[joint].law = law
 
     def drive(self, pattern: np.ndarray, stiffness: float, gap: float) -> None:
@@ -203,15 +181,15 @@ class Structure:
         gap : float
             Wanted displacement at the end of the step, less the present one, Σ pattern · movement [N m].
         """
-        self._arrays[at.PATTERN][:] = pattern
+        self._tables.make_pattern()
+        self._tables[at.PATTERN][:] = pattern
         self._settings[at.SPREAD_STIFFNESS] = stiffness
         self._settings[at.SPREAD_GAP] = gap
-        self._control[at.SPREAD] = 1
 
     @property
     def pattern_response(self) -> np.ndarray:
         """Change of the bodies' velocities for a unit impulse of the driven pattern, joints included, (bodies, 3)."""
-        return self._arrays[at.IMAGE].copy()
+        return self._tables[at.IMAGE].copy()
 
     @property
     def load_factor(self) -> float:
@@ -256,7 +234,7 @@ class Structure:
     @property
     def elastic_deformation(self) -> np.ndarray:
         """Deformation that the force explains without viscous damping, (n, 3) [m, m, rad]; 0 in a broken joint."""
-        upper, damping = self._arrays[at.STIFFNESS], self._arrays[at.DAMPING]
+        upper, damping = self._tables[at.STIFFNESS], self._tables[at.DAMPING]
         rates = np.array([joint.rate() for joint in self.joints]) if damping.any() else np.zeros((len(upper), 3))
         # Where a joint has no stiffness it has no force either.
         stiffness = upper[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
@@ -267,9 +245,9 @@ class Structure:
     def yielding(self) -> np.ndarray:
         """Whether the axial, shear and rotational part of each joint gave way in the last step, (n, 3) bool."""
         reach = self._settings[at.STEP] * (self._settings[at.BETA] + self._settings[at.DELTA])
-        viscous = self._arrays[at.DAMPING] / reach if reach > 0.0 else 0.0
-        tangent = self._arrays[at.RESPONSE][:, [at.TANGENT, at.TANGENT + 3, at.TANGENT + 5]] - viscous
-        elastic = self._arrays[at.STIFFNESS][:, [0, 3, 5]]
+        viscous = self._tables[at.DAMPING] / reach if reach > 0.0 else 0.0
+        tangent = self._tables[at.RESPONSE][:, [at.TANGENT, at.TANGENT + 3, at.TANGENT + 5]] - viscous
+        elastic = self._tables[at.STIFFNESS][:, [0, 3, 5]]
         yields: np.ndarray = (tangent < (1.0 - 1e-9) * elastic) & self.active[:, None] & (reach > 0.0)
         return yields
 
@@ -296,7 +274,12 @@ class Structure:
     @property
     def active(self) -> np.ndarray:
         """Whether each joint still holds, (n,) bool; not when it is broken or was taken out of the space."""
-        return self._active.astype(bool)
+        return self._tables[at.ACTIVE].astype(bool)
+
+    @property
+    def energy(self) -> Energy:
+        """Ledger of the structure since it was built [J]."""
+        return Energy(*self._tables[at.LEDGER].tolist())
 
     @property
     def residual(self) -> float:
@@ -313,8 +296,8 @@ class Structure:
         """How many solves so far ended above the tolerance."""
         return int(self._control[at.UNCONVERGED])
 
-    def _told(self) -> None:
-        """Something happened in a step that the space has not left yet."""
+    def told(self) -> None:
+        """Something happened in a step that the space has not left yet; called by the kernels."""
         fault = int(self._control[at.FAULT])
         if fault >= 0:
             self._control[at.FAULT] = -1
@@ -328,7 +311,7 @@ class Structure:
             return
         if self._control[at.MISSED] > 0:
             # Chipmunk solved these by itself in this step; in the next there is room for them.
-            self._make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
+            self._tables.make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
         if self._control[at.BROKE] == 0:
             return
         for joint in self.joints:
@@ -340,46 +323,6 @@ class Structure:
                         joint.on_break(joint)
             elif joint.structure is self:
                 joint.ask_for_structure()
-
-
-def group(constraint: pymunk.Constraint, space: pymunk.Space) -> None:  # noqa: ARG001
-    """Group all ductile joints of ``space`` into structures; those whose company has not changed stay as they are."""
-    joints = [c for c in space.constraints if isinstance(c, DuctileJoint) and not c.broken]
-    parent: dict[pymunk.Body, pymunk.Body] = {}
-
-    def root(body: pymunk.Body) -> pymunk.Body:
-        while parent.setdefault(body, body) is not body:
-            parent[body] = parent[parent[body]]
-            body = parent[body]
-        return body
-
-    for joint in joints:
-        ends = [body for body in (joint.a, joint.b) if body.body_type == pymunk.Body.DYNAMIC]
-        if len(ends) == 2:
-            parent[root(ends[0])] = root(ends[1])
-    groups: dict[pymunk.Body, list[DuctileJoint]] = {}
-    for joint in joints:
-        body = joint.a if joint.a.body_type == pymunk.Body.DYNAMIC else joint.b
-        groups.setdefault(root(body), []).append(joint)
-    for members in groups.values():
-        old = members[0].structure
-        if old is not None and set(old.joints) == set(members):
-            for joint in members:
-                joint.pre_solve = None
-        else:
-            Structure(members)
-
-
-_structures: WeakValueDictionary[int, Structure] = WeakValueDictionary()
-_keys = itertools.count(1)
-
-
-def _tell(key: int) -> None:
-    _structures[key]._told()
-
-
-#: `_tell` as a C function, for the kernels to call.
-_notice = ctypes.CFUNCTYPE(None, ctypes.c_int64)(_tell)
 
 
 def _space_of(joint: DuctileJoint) -> pymunk.Space:
@@ -397,9 +340,3 @@ def _raise_after_step(space: pymunk.Space, error: Exception) -> None:
             raise pending.pop()
 
     space.add_post_step_callback(fail, object())
-
-
-def _joined(pieces: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """All pieces in one array, and where each begins and the last one ends."""
-    ends = np.concatenate([[0], np.cumsum([len(piece) for piece in pieces])]).astype(np.int64)
-    return np.concatenate(pieces), ends

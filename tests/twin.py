@@ -82,4 +82,6 @@ class Twin:
         self.force = np.clip(trial, -cap, cap).reshape(-1, 3)
         with np.errstate(divide="ignore", invalid="ignore"):
             slip = np.where(k > 0.0, (trial - self.force.ravel()) / k, 0.0)
-        self.slip = self.slip + slip.reshape(-1, 3)
+        # By the midpoint rule, flow up to q* is that of a part of the step only.
+        whole = 1.0 if self.beta == 0.0 else 1.0 / (0.5 + self.delta)
+        self.slip = self.slip + whole * slip.reshape(-1, 3)

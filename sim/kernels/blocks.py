@@ -5,21 +5,23 @@ It is factored as L D Lᵀ in the order and over the pattern that `sim.ordering`
 
 from numba import njit
 
-from sim.chipmunk import BODY_WORDS, MASS, MOMENT
-from sim.kernels.layout import TANGENT
-from sim.memory import floats
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.layout import INERTIA_I, INERTIA_M, TANGENT
 
 
 @njit(error_model="numpy")
-def assemble(  # type: ignore[no-untyped-def]
-    n, moving, joint_bodies, body_at, joint_slot, factor, response, jacobian, diagonal, lower
-):
+def assemble(t, factor):  # type: ignore[no-untyped-def]
     """M + factor Jᵀ D J, D from the joints' last response; upper triangles of the diagonal blocks."""
+    n, moving = t[at.JOINTS], t[at.MOVING]
+    joint_bodies, joint_slot, weight = views.joint_bodies(t), views.joint_slot(t), views.weight(t)
+    response, jacobian = views.response(t), views.jacobian(t)
+    diagonal, lower = views.diagonal(t), views.lower(t)
     for i in range(moving):
-        b = floats(body_at[i], BODY_WORDS)
-        diagonal[i, 0], diagonal[i, 1], diagonal[i, 2] = b[MASS], 0.0, 0.0
-        diagonal[i, 4], diagonal[i, 5], diagonal[i, 8] = b[MASS], 0.0, b[MOMENT]
-    for slot in range(len(lower)):
+        mass = weight[i, INERTIA_M]
+        diagonal[i, 0], diagonal[i, 1], diagonal[i, 2] = mass, 0.0, 0.0
+        diagonal[i, 4], diagonal[i, 5], diagonal[i, 8] = mass, 0.0, weight[i, INERTIA_I]
+    for slot in range(t[at.LOWER]):
         for i in range(9):
             lower[slot, i] = 0.0
     for k in range(n):
@@ -136,6 +138,27 @@ def factorise(moving, column_start, column_rows, fill_targets, diagonal, lower, 
                     lower[target, r] -= x * lower[p, 0] + y * lower[p, 1] + z * lower[p, 2]
                     lower[target, r + 1] -= x * lower[p, 3] + y * lower[p, 4] + z * lower[p, 5]
                     lower[target, r + 2] -= x * lower[p, 6] + y * lower[p, 7] + z * lower[p, 8]
+
+
+@njit(error_model="numpy")
+def factorise_matrix(t, factor):  # type: ignore[no-untyped-def]
+    """Assemble M + factor Jᵀ D J, and factor it."""
+    assemble(t, factor)
+    factorise(
+        t[at.MOVING],
+        views.column_start(t),
+        views.column_rows(t),
+        views.fill_targets(t),
+        views.diagonal(t),
+        views.lower(t),
+        views.scaled(t),
+    )
+
+
+@njit(error_model="numpy")
+def solve(t, first, x):  # type: ignore[no-untyped-def]
+    """Solve with the factored matrix in place; ``x``, (bodies, 3), holds a right side that is zero before ``first``."""
+    substitute(t[at.MOVING], first, views.column_start(t), views.column_rows(t), views.diagonal(t), views.scaled(t), x)
 
 
 @njit(error_model="numpy")

@@ -17,20 +17,48 @@ import math
 
 from numba import njit
 
-from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, COSINE, MASS_INVERSE, MOMENT_INVERSE, SINE, X
-from sim.kernels.layout import ANCHOR_A, ANCHOR_B, ARC, AXIS_A, AXIS_B, BETA, REST_A, REST_B, STEP, TURN
+from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, COSINE, SINE, X
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.layout import ANCHOR_A, ANCHOR_B, ARC, AXIS_A, AXIS_B, INVERSE_I, INVERSE_M, REST_A, REST_B, TURN
 from sim.memory import floats, integers
+
+_EPSILON = 2.0**-52
 
 
 @njit(error_model="numpy")
-def prepare(  # type: ignore[no-untyped-def]
-    n, joint_bodies, body_at, joint_at, active, geometry, settings, jacobian, deformation, lightness, velocity
-):
-    """Deformation and gradient at the bodies' present positions; joints no longer in the space get none."""
-    beta, h = settings[BETA], settings[STEP]
-    for k in range(n):
+def leave_out(t):  # type: ignore[no-untyped-def]
+    """Let go of joints that are no longer in the space; returns whether any joint is tied to a held body."""
+    active, joint_at, joint_bodies = views.active(t), views.joint_at(t), views.joint_bodies(t)
+    moving, held = t[at.MOVING], False
+    for k in range(t[at.JOINTS]):
         if integers(joint_at[k], CONSTRAINT_SPACE + 1)[CONSTRAINT_SPACE] == 0:
             active[k] = 0
+        held = held or (active[k] != 0 and (joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving))
+    return held
+
+
+@njit(error_model="numpy")
+def prepare(t):  # type: ignore[no-untyped-def]
+    """Deformation and gradient at the bodies' present positions; joints that do not hold get none.
+
+    Also what rounding of positions makes of the residual impulses, as an energy like theirs.
+    """
+    joint_bodies, body_at, active, geometry = (
+        views.joint_bodies(t),
+        views.body_at(t),
+        views.active(t),
+        views.geometry(t),
+    )
+    jacobian, deformation, lightness = (
+        views.jacobian(t),
+        views.per_joint(t, at.DEFORMATION),
+        views.per_joint(t, at.LIGHTNESS),
+    )
+    settings, weight, last = views.settings(t), views.weight(t), views.per_body(t, at.LAST_VELOCITY)
+    moving, lag, stiffness = t[at.MOVING], settings[at.BETA] * settings[at.STEP], views.stiffness(t)
+    rounding = 0.0
+    for k in range(t[at.JOINTS]):
         if active[k] == 0:
             for i in range(18):
                 jacobian[k, i] = 0.0
@@ -52,15 +80,13 @@ def prepare(  # type: ignore[no-untyped-def]
         jacobian[k, 3], jacobian[k, 4], jacobian[k, 5] = c, s, -c * rby + s * rbx + alpha * v
         jacobian[k, 6], jacobian[k, 7], jacobian[k, 8] = s, -c, -s * ray - c * rax - (1.0 - alpha) * u
         jacobian[k, 9], jacobian[k, 10], jacobian[k, 11] = -s, c, s * rby + c * rbx - alpha * u
-        jacobian[k, 12], jacobian[k, 13], jacobian[k, 14], jacobian[k, 15], jacobian[k, 16], jacobian[k, 17] = (
-            0.0,
-            0.0,
-            -1.0,
-            0.0,
-            0.0,
-            1.0,
-        )
-        mass, turn_a, turn_b = a[MASS_INVERSE] + b[MASS_INVERSE], a[MOMENT_INVERSE], b[MOMENT_INVERSE]
+        jacobian[k, 12], jacobian[k, 13], jacobian[k, 14] = 0.0, 0.0, -1.0
+        jacobian[k, 15], jacobian[k, 16], jacobian[k, 17] = 0.0, 0.0, 1.0
+        mass, turn_a, turn_b = 0.0, 0.0, 0.0
+        if ia < moving:
+            mass, turn_a = weight[ia, INVERSE_M], weight[ia, INVERSE_I]
+        if ib < moving:
+            mass, turn_b = mass + weight[ib, INVERSE_M], weight[ib, INVERSE_I]
         lightness[k, 0] = mass + jacobian[k, 2] * jacobian[k, 2] * turn_a + jacobian[k, 5] * jacobian[k, 5] * turn_b
         lightness[k, 1] = mass + jacobian[k, 8] * jacobian[k, 8] * turn_a + jacobian[k, 11] * jacobian[k, 11] * turn_b
         lightness[k, 2] = turn_a + turn_b
@@ -69,11 +95,15 @@ def prepare(  # type: ignore[no-untyped-def]
         deformation[k, 0] -= arc * (angle_b - angle_a)
         jacobian[k, 2] += 2.0 * arc
         jacobian[k, 5] -= 2.0 * arc
-        if beta != 0.0:
-            x, y, z = rates(jacobian, k, velocity, ia, velocity, ib)
-            deformation[k, 0] -= beta * h * x
-            deformation[k, 1] -= beta * h * y
-            deformation[k, 2] -= beta * h * z
+        place, turn = abs(b[X]) + abs(b[X + 1]) + abs(rbx) + abs(rby), abs(angle_a) + abs(angle_b)
+        rounding += lightness[k, 0] * (stiffness[k, 0] * place) ** 2 + lightness[k, 1] * (stiffness[k, 3] * place) ** 2
+        rounding += lightness[k, 2] * (stiffness[k, 5] * turn) ** 2
+        if lag != 0.0:
+            x, y, z = rates(jacobian, k, last, ia, last, ib)
+            deformation[k, 0] -= lag * x
+            deformation[k, 1] -= lag * y
+            deformation[k, 2] -= lag * z
+    settings[at.ROUNDING] = (_EPSILON * settings[at.STEP]) ** 2 * rounding
 
 
 @njit(inline="always", error_model="numpy")

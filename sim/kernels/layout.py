@@ -1,6 +1,6 @@
 """What lies where in the memory that the kernels and `sim.structure` share.
 
-The control table is int64: sizes, counters, flags, then the addresses of the arrays.
+The control table is int64: sizes, counters, flags, then the addresses of the arrays; `views` gives the arrays.
 """
 
 # Sizes.
@@ -16,7 +16,15 @@ NOTICE, KEY = 10, 11
 CONTACTS, ROOM, MISSED, HASH_LENGTH, PUSHED_APART = 12, 13, 14, 15, 16
 # Whether any joint has a limit; whether a load pattern acts.
 BREAKABLE, SPREAD = 17, 18
-_FIRST_ADDRESS = 19
+# Structures in contact with each other are solved together: control table of the one that acts for all of them (0: on
+# its own), and the next one in their list.
+HEAD, NEXT = 19, 20
+# Whether any joint flowed in the last step.
+FLOWING = 24
+# In this step: whether a body was moved by anything but its velocity; whether a body turns with added inertia, and
+# whether nothing holds the structure.
+SHIFTED, TURNING, FREE = 21, 22, 23
+_FIRST_ADDRESS = 25
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -34,6 +42,7 @@ _FIRST_ADDRESS = 19
     FILL_TARGETS,  # int64
     JOINT_SLOT,  # (joints,) int64
     SETTINGS,  # (settings,)
+    LEDGER,  # (ledger,)
     JACOBIAN,  # (joints, 18): rows u, v, θ; columns a's vx vy ω, b's vx vy ω
     DEFORMATION,  # (joints, 3): q at the step's start, less the part of the old velocities
     LIGHTNESS,  # (joints, 3): diagonal of J M⁻¹ Jᵀ
@@ -41,9 +50,15 @@ _FIRST_ADDRESS = 19
     RESIDUAL,  # (joints, 3)
     SLOPE,  # (joints, 3): Δλ
     RESPONSE,  # (joints, 9)
-    VELOCITY,  # (bodies, 3)
+    WEIGHT,  # (moving, 4): m, I with what is added to it, and their inverses
+    VELOCITY,  # (bodies, 3): those that the solver works on
+    WRITTEN,  # (bodies, 3): those that it gave the bodies last
     START_VELOCITY,  # (bodies, 3): before the step's forces
     LAST_VELOCITY,  # (bodies, 3): with which the last step ended, and the bodies were moved
+    LAST_POSITION,  # (bodies, 3): with which the last step ended
+    SHIFT,  # (bodies, 6): movement since then that velocities do not explain; by contacts, by anyone else
+    EXTERNAL,  # (bodies, 3): impulses of the step from outside the structure
+    CONTACT_IMPULSE,  # (bodies, 3): impulses of the step from contacts
     SOLUTION,  # (bodies, 3); stays zero for bodies that do not move
     DIAGONAL,  # (moving, 9)
     LOWER_BLOCKS,  # (lower, 9)
@@ -51,20 +66,22 @@ _FIRST_ADDRESS = 19
     RESULT,  # (joints, 14)
     BODY_KEYS,  # hash table from a body's address …
     BODY_VALUES,  # … to its index
-    PLACES,  # (room, 5) int64: contacts, see `contacts`
-    TOUCHES,  # (room, 10)
-    OPERATOR,  # (2 room, 2 room)
-    CONTACT_VELOCITY,  # (2 room,)
-    CONTACT_CHANGE,  # (2 room,)
+    PLACES,  # (room, 8) int64: contacts, see `contacts`
+    TOUCHES,  # (room, 15)
     PATTERN,  # (bodies, 3): forces of the load pattern for a load factor of 1
     IMAGE,  # (bodies, 3): H⁻¹ of it
-) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 40)
-CONTROL_WORDS = _FIRST_ADDRESS + 40
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 44)
+CONTROL_WORDS = _FIRST_ADDRESS + 44
 
 # Settings (float64); the last three are those of the load pattern's spring, see `spread`.
-STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL = 0, 1, 2, 3, 4
-SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 5, 6, 7
-SETTINGS_WORDS = 8
+STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL, STEP_RATIO, ROUNDING = 0, 1, 2, 3, 4, 5, 6
+SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 7, 8, 9
+SETTINGS_WORDS = 10
+
+# Ledger [J], see `energy`: running totals, and the present kinetic and elastic energy.
+LEDGER_EXTERNAL, LEDGER_KINETIC, LEDGER_ELASTIC, LEDGER_PLASTIC = 0, 1, 2, 3
+LEDGER_CONTACT, LEDGER_VISCOUS, LEDGER_NUMERICAL = 4, 5, 6
+LEDGER_WORDS = 7
 
 # Geometry of a joint: anchor on a and on b (from their centres of gravity, body coordinates), rest angle of the
 # joint's frame on a and on b, share α of b's rotation in the frame, cosine and sine of the two rest angles, extension
@@ -82,8 +99,22 @@ RESPONSE_WORDS = 9
 # What a law's commit gives: elastic energy, work dissipated in the step, plastic deformation added in it (u, v, θ).
 COMMIT_WORDS = 5
 
+# Weight of a body in the solver.
+INERTIA_M, INERTIA_I, INVERSE_M, INVERSE_I = 0, 1, 2, 3
+WEIGHT_WORDS = 4
+
 # Result of a step: q*, force, plastic deformation summed without sign (elongation, shortening, slip, rotation),
 # elastic energy, plastic work so far, viscous work so far, share of the plastic capacity used.
 RESULT_Q, RESULT_FORCE, RESULT_PLASTIC = 0, 3, 6
 RESULT_ELASTIC, RESULT_DISSIPATED, RESULT_VISCOUS, RESULT_USED = 10, 11, 12, 13
 RESULT_WORDS = 14
+
+# A contact in `places`: address of the cpContact, its hash; for each side the control table of the structure that the
+# body belongs to (0: none), its index there, and its address.
+WHERE, HASH, OWNER_A, INDEX_A, BODY_A, OWNER_B, INDEX_B, BODY_B = range(8)
+PLACE_WORDS = 8
+# A contact in `touches`: normal, arms, friction, surface velocity along the tangent, wanted normal velocity, bias,
+# cached impulses, velocities of the other side's point at the step's start (normal, tangent), which side is other (±1).
+NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
+CACHED, OTHER_START, OTHER_SIDE = 10, 12, 14
+TOUCH_WORDS = 15

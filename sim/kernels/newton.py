@@ -21,67 +21,72 @@ import math
 import numpy as np
 from numba import njit
 
-from sim.chipmunk import BODY_WORDS, MASS, MASS_INVERSE, MOMENT, MOMENT_INVERSE
-from sim.kernels.blocks import assemble, factorise, substitute
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.blocks import factorise_matrix, solve
 from sim.kernels.kinematics import rates
-from sim.kernels.layout import BETA, DELTA, STEP, TANGENT
-from sim.kernels.spread import (
-    add_spread,
-    advance_spread,
-    along,
-    lightness_of,
-    spread_correction,
-    spread_residual,
-)
-from sim.memory import call_law, floats
+from sim.kernels.layout import INERTIA_I, INERTIA_M, INVERSE_I, INVERSE_M, RESPONSE_WORDS, RESULT_WORDS, STEP, TANGENT
+from sim.kernels.spread import advance_spread, along, spread_residual, spread_step
+from sim.memory import call_law
 
 MOST_NEWTON_STEPS = 100
+#: After so many steps, start again from the elastic prediction.
+_PATIENCE = 15
+#: How `respond` takes a joint: by its law, or by a line with its stiffness or its last tangent.
+LAWS, STIFFNESS, TANGENTS = 0, 1, 2
 MOST_SEARCHES = 40
 _KINK = 1e-3
+_MOST_REFINEMENTS = 5
 
 
 @njit(error_model="numpy")
-def respond(  # type: ignore[no-untyped-def]
-    n,
-    joint_bodies,
-    laws,
-    stiffness,
-    damping,
-    scale,
-    settings,
-    jacobian,
-    deformation,
-    lightness,
-    impulse,
-    velocity,
-    response,
-    residual,
-    predicting,
-):
+def reach_of(t):  # type: ignore[no-untyped-def]
+    """How far q* follows the new velocities: (β + δ) h [s]."""
+    settings = views.settings(t)
+    return settings[STEP] * (settings[at.BETA] + settings[at.DELTA])
+
+
+@njit(error_model="numpy")
+def respond(t, by):  # type: ignore[no-untyped-def]
     """Residual r of every joint at the present velocities; returns its energy, and that of the impulses.
 
-    While ``predicting``, every law is replaced by its elastic line through the deformation qₙ at the step's start.
+    To predict, every law is replaced by a line through where the last step ended, with the stiffness of the joint or
+    with its tangent there. At that point a law does not flow; at the step's start it may seem to, where bodies moved
+    straight while they turned.
     """
-    h = settings[STEP]
-    reach = h * (settings[BETA] + settings[DELTA])
+    joint_bodies, laws, scale = views.joint_bodies(t), views.laws(t), views.scale(t)
+    stiffness, damping, jacobian = views.stiffness(t), views.damping(t), views.jacobian(t)
+    deformation, lightness = views.per_joint(t, at.DEFORMATION), views.per_joint(t, at.LIGHTNESS)
+    impulse, residual = views.per_joint(t, at.IMPULSE), views.per_joint(t, at.RESIDUAL)
+    velocity, response, result = views.per_body(t, at.VELOCITY), views.response(t), views.result(t)
+    h, reach = views.settings(t)[STEP], reach_of(t)
+    old_reach, line = reach / views.settings(t)[at.STEP_RATIO], np.empty(6 if by != LAWS else 0)
     error, size = 0.0, 0.0
-    q = np.empty(3)
-    for k in range(n):
+    for k in range(t[at.JOINTS]):
         x, y, z = rates(jacobian, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
-        if predicting:
-            call_law(laws[k, 0], laws[k, 2], laws[k, 3], deformation[k].ctypes.data, response[k].ctypes.data)
-            response[k, 0] += reach * (stiffness[k, 0] * x + stiffness[k, 1] * y + stiffness[k, 2] * z)
-            response[k, 1] += reach * (stiffness[k, 1] * x + stiffness[k, 3] * y + stiffness[k, 4] * z)
-            response[k, 2] += reach * (stiffness[k, 2] * x + stiffness[k, 4] * y + stiffness[k, 5] * z)
+        u, v, turn = deformation[k, 0] + reach * x, deformation[k, 1] + reach * y, deformation[k, 2] + reach * z
+        out = t[at.RESPONSE] + 8 * RESPONSE_WORDS * k
+        if by != LAWS:
+            if by == STIFFNESS:
+                for i in range(6):
+                    line[i] = stiffness[k, i]
+            else:
+                for i in range(6):
+                    line[i] = response[k, TANGENT + i]
+                line[0] -= damping[k, 0] / old_reach
+                line[3] -= damping[k, 1] / old_reach
+                line[5] -= damping[k, 2] / old_reach
+            call_law(laws[k, 0], laws[k, 2], laws[k, 3], t[at.RESULT] + 8 * RESULT_WORDS * k, out)
+            u, v, turn = u - result[k, 0], v - result[k, 1], turn - result[k, 2]
+            response[k, 0] += line[0] * u + line[1] * v + line[2] * turn
+            response[k, 1] += line[1] * u + line[3] * v + line[4] * turn
+            response[k, 2] += line[2] * u + line[4] * v + line[5] * turn
             for i in range(6):
-                response[k, TANGENT + i] = stiffness[k, i]
+                response[k, TANGENT + i] = line[i]
         else:
-            q[0], q[1], q[2] = (
-                deformation[k, 0] + reach * x,
-                deformation[k, 1] + reach * y,
-                deformation[k, 2] + reach * z,
-            )
-            call_law(laws[k, 0], laws[k, 2], laws[k, 3], q.ctypes.data, response[k].ctypes.data)
+            # The joint's row of residuals holds q* until they are known.
+            residual[k, 0], residual[k, 1], residual[k, 2] = u, v, turn
+            call_law(laws[k, 0], laws[k, 2], laws[k, 3], t[at.RESIDUAL] + 24 * k, out)
             if scale[k] != 1.0:
                 for i in range(9):
                     response[k, i] *= scale[k]
@@ -99,68 +104,73 @@ def respond(  # type: ignore[no-untyped-def]
 
 
 @njit(error_model="numpy")
-def motion_scale(moving, body_at, velocity):  # type: ignore[no-untyped-def]
+def motion_scale(t):  # type: ignore[no-untyped-def]
     """Σ m v² + I ω² of the dynamic bodies."""
+    weight, velocity = views.weight(t), views.per_body(t, at.VELOCITY)
     total = 0.0
-    for i in range(moving):
-        b = floats(body_at[i], BODY_WORDS)
+    for i in range(t[at.MOVING]):
         x, y, w = velocity[i, 0], velocity[i, 1], velocity[i, 2]
-        total += b[MASS] * (x * x + y * y) + b[MOMENT] * w * w
+        total += weight[i, INERTIA_M] * (x * x + y * y) + weight[i, INERTIA_I] * w * w
     return total
 
 
 @njit(error_model="numpy")
-def gather(n, moving, joint_bodies, jacobian, per_joint, per_body):  # type: ignore[no-untyped-def]
+def gather(t, per_joint, out):  # type: ignore[no-untyped-def]
     """Jᵀ times a vector of joint impulses."""
+    joint_bodies, jacobian, moving = views.joint_bodies(t), views.jacobian(t), t[at.MOVING]
     for i in range(moving):
-        per_body[i, 0], per_body[i, 1], per_body[i, 2] = 0.0, 0.0, 0.0
-    for k in range(n):
+        out[i, 0], out[i, 1], out[i, 2] = 0.0, 0.0, 0.0
+    for k in range(t[at.JOINTS]):
         r0, r1, r2 = per_joint[k, 0], per_joint[k, 1], per_joint[k, 2]
         px, py = jacobian[k, 3] * r0 + jacobian[k, 9] * r1, jacobian[k, 4] * r0 + jacobian[k, 10] * r1
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         if ia < moving:
-            per_body[ia, 0] -= px
-            per_body[ia, 1] -= py
-            per_body[ia, 2] += jacobian[k, 2] * r0 + jacobian[k, 8] * r1 + jacobian[k, 14] * r2
+            out[ia, 0] -= px
+            out[ia, 1] -= py
+            out[ia, 2] += jacobian[k, 2] * r0 + jacobian[k, 8] * r1 + jacobian[k, 14] * r2
         if ib < moving:
-            per_body[ib, 0] += px
-            per_body[ib, 1] += py
-            per_body[ib, 2] += jacobian[k, 5] * r0 + jacobian[k, 11] * r1 + jacobian[k, 17] * r2
+            out[ib, 0] += px
+            out[ib, 1] += py
+            out[ib, 2] += jacobian[k, 5] * r0 + jacobian[k, 11] * r1 + jacobian[k, 17] * r2
 
 
 @njit(error_model="numpy")
-def linearise(  # type: ignore[no-untyped-def]
-    n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope
-):
-    """Δλ = r - factor D J ΔV; returns r · J ΔV, how fast the incremental energy falls along ΔV."""
+def linearise(t, factor, with_residual):  # type: ignore[no-untyped-def]
+    """Δλ = r - factor D J ΔV, r only ``with_residual`` (1 or 0); returns r · J ΔV, how fast the energy falls."""
+    joint_bodies, jacobian, response = views.joint_bodies(t), views.jacobian(t), views.response(t)
+    residual, solution = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.SOLUTION)
+    slope, d = views.per_joint(t, at.SLOPE), TANGENT
     fall = 0.0
-    for k in range(n):
-        ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
-        x, y, z = rates(jacobian, k, solution, ia, solution, ib)
-        fall += residual[k, 0] * x + residual[k, 1] * y + residual[k, 2] * z
+    for k in range(t[at.JOINTS]):
+        r0, r1, r2 = with_residual * residual[k, 0], with_residual * residual[k, 1], with_residual * residual[k, 2]
+        x, y, z = rates(jacobian, k, solution, joint_bodies[k, 0], solution, joint_bodies[k, 1])
+        fall += r0 * x + r1 * y + r2 * z
         x, y, z = factor * x, factor * y, factor * z
-        t = TANGENT
-        slope[k, 0] = residual[k, 0] - (response[k, t] * x + response[k, t + 1] * y + response[k, t + 2] * z)
-        slope[k, 1] = residual[k, 1] - (response[k, t + 1] * x + response[k, t + 3] * y + response[k, t + 4] * z)
-        slope[k, 2] = residual[k, 2] - (response[k, t + 2] * x + response[k, t + 4] * y + response[k, t + 5] * z)
+        slope[k, 0] = r0 - (response[k, d] * x + response[k, d + 1] * y + response[k, d + 2] * z)
+        slope[k, 1] = r1 - (response[k, d + 1] * x + response[k, d + 3] * y + response[k, d + 4] * z)
+        slope[k, 2] = r2 - (response[k, d + 2] * x + response[k, d + 4] * y + response[k, d + 5] * z)
     return fall
 
 
 @njit(error_model="numpy")
-def descent(n, moving, joint_bodies, jacobian, residual, direction):  # type: ignore[no-untyped-def]
+def descent(t):  # type: ignore[no-untyped-def]
     """r · J ΔV at the present residual."""
+    joint_bodies, jacobian = views.joint_bodies(t), views.jacobian(t)
+    residual, direction = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.SOLUTION)
     total = 0.0
-    for k in range(n):
-        ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
-        x, y, z = rates(jacobian, k, direction, ia, direction, ib)
+    for k in range(t[at.JOINTS]):
+        x, y, z = rates(jacobian, k, direction, joint_bodies[k, 0], direction, joint_bodies[k, 1])
         total += residual[k, 0] * x + residual[k, 1] * y + residual[k, 2] * z
     return total
 
 
 @njit(error_model="numpy")
-def advance(n, moving, share, joint_bodies, body_at, jacobian, slope, impulse, velocity):  # type: ignore[no-untyped-def]
+def advance(t, share):  # type: ignore[no-untyped-def]
     """λ += share Δλ and V += share M⁻¹ Jᵀ Δλ."""
-    for k in range(n):
+    joint_bodies, jacobian, weight = views.joint_bodies(t), views.jacobian(t), views.weight(t)
+    slope, impulse = views.per_joint(t, at.SLOPE), views.per_joint(t, at.IMPULSE)
+    velocity, moving = views.per_body(t, at.VELOCITY), t[at.MOVING]
+    for k in range(t[at.JOINTS]):
         x, y, z = share * slope[k, 0], share * slope[k, 1], share * slope[k, 2]
         impulse[k, 0] += x
         impulse[k, 1] += y
@@ -168,157 +178,173 @@ def advance(n, moving, share, joint_bodies, body_at, jacobian, slope, impulse, v
         px, py = jacobian[k, 3] * x + jacobian[k, 9] * y, jacobian[k, 4] * x + jacobian[k, 10] * y
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         if ia < moving:
-            b = floats(body_at[ia], BODY_WORDS)
-            velocity[ia, 0] -= px * b[MASS_INVERSE]
-            velocity[ia, 1] -= py * b[MASS_INVERSE]
-            velocity[ia, 2] += (jacobian[k, 2] * x + jacobian[k, 8] * y + jacobian[k, 14] * z) * b[MOMENT_INVERSE]
+            light, nimble = weight[ia, INVERSE_M], weight[ia, INVERSE_I]
+            velocity[ia, 0] -= px * light
+            velocity[ia, 1] -= py * light
+            velocity[ia, 2] += (jacobian[k, 2] * x + jacobian[k, 8] * y + jacobian[k, 14] * z) * nimble
         if ib < moving:
-            b = floats(body_at[ib], BODY_WORDS)
-            velocity[ib, 0] += px * b[MASS_INVERSE]
-            velocity[ib, 1] += py * b[MASS_INVERSE]
-            velocity[ib, 2] += (jacobian[k, 5] * x + jacobian[k, 11] * y + jacobian[k, 17] * z) * b[MOMENT_INVERSE]
+            light, nimble = weight[ib, INVERSE_M], weight[ib, INVERSE_I]
+            velocity[ib, 0] += px * light
+            velocity[ib, 1] += py * light
+            velocity[ib, 2] += (jacobian[k, 5] * x + jacobian[k, 11] * y + jacobian[k, 17] * z) * nimble
 
 
 @njit(error_model="numpy")
-def iterate(  # type: ignore[no-untyped-def]
-    n,
-    moving,
-    joint_bodies,
-    body_at,
-    laws,
-    stiffness,
-    damping,
-    scale,
-    settings,
-    joint_slot,
-    column_start,
-    column_rows,
-    targets,
-    jacobian,
-    deformation,
-    lightness,
-    impulse,
-    velocity,
-    response,
-    residual,
-    slope,
-    solution,
-    diagonal,
-    lower,
-    scaled,
-    spread,
-    pattern,
-    image,
-    tolerance,
-    predicting,
-):
+def restart(t):  # type: ignore[no-untyped-def]
+    """Apply the last step's impulses, which a step starts from, to velocities without joints.
+
+    From those, forces would be differences of numbers a million times their size.
+    """
+    slope, impulse = views.per_joint(t, at.SLOPE), views.per_joint(t, at.IMPULSE)
+    for k in range(t[at.JOINTS]):
+        for i in range(3):
+            slope[k, i], impulse[k, i] = impulse[k, i], 0.0
+    advance(t, 1.0)
+    if t[at.SPREAD] == 1:
+        settings = views.settings(t)
+        amount, settings[at.SPREAD_IMPULSE] = settings[at.SPREAD_IMPULSE], 0.0
+        advance_spread(t, amount)
+
+
+@njit(error_model="numpy")
+def measure(t, by):  # type: ignore[no-untyped-def]
+    """Residuals of the joints and of the load pattern's spring; returns their energy, that of all, and the spring's."""
+    error, size = respond(t, by)
+    spring = 0.0
+    if t[at.SPREAD] == 1:
+        spring, light = spread_residual(t)
+        error += light * spring * spring
+    return error, size, spring
+
+
+@njit(error_model="numpy")
+def newton_direction(t, factor, spring):  # type: ignore[no-untyped-def]
+    """ΔV and Δλ with the factor at hand; returns how fast the energy falls along ΔV, and the spring's ΔΛ."""
+    solution, change, fall = views.per_body(t, at.SOLUTION), 0.0, 0.0
+    gather(t, views.per_joint(t, at.RESIDUAL), solution)
+    solve(t, 0, solution)
+    if t[at.SPREAD] == 1:
+        change = spread_step(t, spring)
+        fall = spring * along(t, views.per_body(t, at.PATTERN), solution)
+    return fall + linearise(t, factor, 1.0), change
+
+
+@njit(error_model="numpy")
+def go(t, length, spring_change):  # type: ignore[no-untyped-def]
+    """Go ``length`` of the direction found; returns what `measure` does there, for the laws as they are."""
+    advance(t, length)
+    if t[at.SPREAD] == 1:
+        advance_spread(t, length * spring_change)
+    return measure(t, LAWS)
+
+
+@njit(error_model="numpy")
+def predict(t, factor, enough):  # type: ignore[no-untyped-def]
+    """The first solve of a step: goes on with the tangents of a last step that flowed, or takes all joints as elastic.
+
+    At the velocities without joints all of them may seem to yield, and from there the way to the solution is long.
+    Returns what `measure` does then.
+    """
+    if t[at.FLOWING] == 0:
+        return predict_elastic(t, factor, enough)
+    _, _, spring = measure(t, TANGENTS)
+    factorise_matrix(t, factor)
+    _, change = newton_direction(t, factor, spring)
+    return go(t, 1.0, change)
+
+
+@njit(error_model="numpy")
+def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
+    """Take every joint as elastic; refined where joints are so stiff that they seem to yield by rounding alone."""
+    before, size, spring = measure(t, STIFFNESS)
+    factorise_matrix(t, factor)
+    error = before
+    for _ in range(_MOST_REFINEMENTS):
+        _, change = newton_direction(t, factor, spring)
+        error, size, spring = go(t, 1.0, change)
+        if error <= enough * (size + motion_scale(t)):
+            break
+        rest, _, spring = measure(t, STIFFNESS)
+        if rest > 0.1 * before or rest <= enough * size:
+            error, size, spring = measure(t, LAWS)
+            break
+        before = rest
+    return error, size, spring
+
+
+@njit(error_model="numpy")
+def iterate(t, predicting):  # type: ignore[no-untyped-def]
     """Newton's method from the present velocities; returns steps taken, whether it converged, and the residual.
 
-    The first solve of a step is ``predicting``: it takes every joint as elastic. At the velocities without joints all
-    of them may seem to yield, and from there the way to the solution is long.
+    The first solve of a step is ``predicting``.
     """
-    factor = settings[STEP] ** 2 * (settings[BETA] + settings[DELTA])
-    error, size = respond(
-        n,
-        joint_bodies,
-        laws,
-        stiffness,
-        damping,
-        scale,
-        settings,
-        jacobian,
-        deformation,
-        lightness,
-        impulse,
-        velocity,
-        response,
-        residual,
-        predicting,
-    )
-    spring, spring_light, spring_slope = 0.0, 0.0, 0.0
-    if spread:
-        spring = spread_residual(moving, settings, pattern, velocity)
-        spring_light = lightness_of(moving, body_at, pattern)
-        error += spring_light * spring * spring
-    motion = motion_scale(moving, body_at, velocity)
-    converged = not predicting and error <= tolerance * (size + motion)
-    best, steps = error, 0
+    settings = views.settings(t)
+    factor, tolerance, rounding = settings[STEP] * reach_of(t), settings[at.TOLERANCE], settings[at.ROUNDING]
+    steps = 0
+    if predicting:
+        error, size, spring = predict(t, factor, tolerance)
+        steps = 1
+    else:
+        error, size, spring = measure(t, LAWS)
+    motion = motion_scale(t)
+    converged = error <= tolerance * (size + motion) + rounding
+    best = error
     while not converged and steps < MOST_NEWTON_STEPS:
         steps += 1
-        assemble(n, moving, joint_bodies, body_at, joint_slot, factor, response, jacobian, diagonal, lower)
-        factorise(moving, column_start, column_rows, targets, diagonal, lower, scaled)
-        gather(n, moving, joint_bodies, jacobian, residual, solution)
-        if spread:
-            add_spread(moving, pattern, spring, solution)
-        substitute(moving, 0, column_start, column_rows, diagonal, scaled, solution)
-        start = 0.0
-        if spread:
-            rate, c = spread_correction(
-                moving, settings, pattern, column_start, column_rows, diagonal, scaled, solution, image
-            )
-            spring_slope = spring - c * rate
-            start = spring * rate
-        start += linearise(n, moving, joint_bodies, factor, jacobian, residual, response, solution, slope)
-        share, low, high, fall_low, fall_high = 1.0, 0.0, 1.0, start, 0.0
-        step_length, last = 1.0, False
-        for search in range(MOST_SEARCHES):
-            advance(n, moving, step_length, joint_bodies, body_at, jacobian, slope, impulse, velocity)
-            if spread:
-                advance_spread(moving, step_length * spring_slope, body_at, pattern, settings, velocity)
-            error, size = respond(
-                n,
-                joint_bodies,
-                laws,
-                stiffness,
-                damping,
-                scale,
-                settings,
-                jacobian,
-                deformation,
-                lightness,
-                impulse,
-                velocity,
-                response,
-                residual,
-                False,
-            )
-            if spread:
-                spring = spread_residual(moving, settings, pattern, velocity)
-                error += spring_light * spring * spring
-            converged = error <= tolerance * (size + motion)
-            if converged or predicting or last:
-                break
-            # Along the step the energy is convex: where it rises too steeply, its least value lies further back.
-            fall = descent(n, moving, joint_bodies, jacobian, residual, solution)
-            if spread:
-                fall += spring * along(moving, pattern, solution)
-            if search == 0:
-                if fall >= -0.5 * start:
-                    break
-                fall_high = fall
-            elif abs(fall) <= 0.3 * start:
-                break
-            elif fall > 0.0:
-                low, fall_low = share, fall
-            else:
-                high, fall_high = share, fall
-            if high - low <= _KINK * high:
-                # The slope jumps here, where a joint stops yielding. Beyond the jump its tangent is the stiff one, and
-                # the next step can follow it; before it the same step would be tried again.
-                if fall <= 0.0:
-                    break
-                new, last = high, True
-            elif search % 3 == 2:
-                new = 0.5 * (low + high)
-            else:
-                new = low + (high - low) * fall_low / (fall_low - fall_high)
-                new = min(max(new, low + 0.02 * (high - low)), high - 0.02 * (high - low))
-            step_length = new - share
-            share = new
-        predicting = False
+        if steps == _PATIENCE:
+            error, size, spring = predict_elastic(t, factor, tolerance)
+        else:
+            factorise_matrix(t, factor)
+            start, change = newton_direction(t, factor, spring)
+            error, size, spring = search(t, start, change, tolerance, motion)
+        converged = error <= tolerance * (size + motion) + rounding
         # Below this it is rounding that remains, and another step would not take it away.
         if steps > 3 and error >= 0.25 * best and error <= 1e6 * tolerance * (size + motion):
             converged = True
         best = min(best, error)
     total = size + motion
     return steps, converged, math.sqrt(error / total) if total > 0.0 else 0.0
+
+
+@njit(error_model="numpy")
+def search(t, start, change, tolerance, motion):  # type: ignore[no-untyped-def]
+    """Line search: how far to go along the direction found; returns what `measure` does there.
+
+    Along it the energy is convex, and falls with ``start`` at first: where it rises too steeply in the end, its least
+    value lies further back.
+    """
+    solution, pattern = views.per_body(t, at.SOLUTION), views.per_body(t, at.PATTERN)
+    share, low, high, fall_low, fall_high = 1.0, 0.0, 1.0, start, 0.0
+    step_length, last = 1.0, False
+    error, size, spring = 0.0, 0.0, 0.0
+    for attempt in range(MOST_SEARCHES):
+        error, size, spring = go(t, step_length, change)
+        if last or error <= tolerance * (size + motion):
+            break
+        fall = descent(t)
+        if t[at.SPREAD] == 1:
+            fall += spring * along(t, pattern, solution)
+        if attempt == 0:
+            if fall >= -0.5 * start:
+                break
+            fall_high = fall
+        elif abs(fall) <= 0.3 * start:
+            break
+        elif fall > 0.0:
+            low, fall_low = share, fall
+        else:
+            high, fall_high = share, fall
+        if high - low <= _KINK * high:
+            # The slope jumps here, where a joint stops yielding. Beyond the jump its tangent is the stiff one, and
+            # the next step can follow it; before it the same step would be tried again.
+            if fall <= 0.0:
+                break
+            new, last = high, True
+        elif attempt % 3 == 2:
+            new = 0.5 * (low + high)
+        else:
+            new = low + (high - low) * fall_low / (fall_low - fall_high)
+            new = min(max(new, low + 0.02 * (high - low)), high - 0.02 * (high - low))
+        step_length = new - share
+        share = new
+    return error, size, spring

@@ -6,77 +6,67 @@ between w and where a driver wants it gives the load factor
     Λ = h k (w_driver - w*),   w* = w_n + h (β + δ) p·V,
 
 so the matrix gains c p pᵀ with c = (β + δ) h² k. That couples all loaded bodies; by Sherman and Morrison's formula it
-costs one more substitution, with H⁻¹ p:
+costs one more substitution. With z = H⁻¹ Jᵀ r for the joints' residuals and y = H⁻¹ p, the spring's own residual ρ
+changes the load factor by ΔΛ, and the velocities by ΔV:
 
-    (H + c p pᵀ)⁻¹ R = x - H⁻¹p · c p·x / (1 + c p·H⁻¹p),   x = H⁻¹ R.
+    ΔΛ = (ρ - c p·z) / (1 + c p·y),   ΔV = z + ΔΛ y.
 """
 
 from numba import njit
 
-from sim.chipmunk import BODY_WORDS, MASS_INVERSE, MOMENT_INVERSE
-from sim.kernels.blocks import substitute
-from sim.kernels.layout import BETA, DELTA, SPREAD_GAP, SPREAD_IMPULSE, SPREAD_STIFFNESS, STEP
-from sim.memory import floats
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.blocks import solve
+from sim.kernels.layout import BETA, DELTA, INVERSE_I, INVERSE_M, SPREAD_GAP, SPREAD_IMPULSE, SPREAD_STIFFNESS, STEP
 
 
 @njit(error_model="numpy")
-def along(moving, pattern, vector):  # type: ignore[no-untyped-def]
+def along(t, pattern, vector):  # type: ignore[no-untyped-def]
     """p · a vector over the bodies."""
     total = 0.0
-    for i in range(moving):
+    for i in range(t[at.MOVING]):
         total += pattern[i, 0] * vector[i, 0] + pattern[i, 1] * vector[i, 1] + pattern[i, 2] * vector[i, 2]
     return total
 
 
 @njit(error_model="numpy")
-def spread_residual(moving, settings, pattern, velocity):  # type: ignore[no-untyped-def]
-    """Residual impulse of the spring, in units of the load factor."""
+def spread_residual(t):  # type: ignore[no-untyped-def]
+    """Residual impulse ρ of the spring, in units of the load factor, and p · M⁻¹ p."""
+    settings, pattern, weight = views.settings(t), views.per_body(t, at.PATTERN), views.weight(t)
     h, k = settings[STEP], settings[SPREAD_STIFFNESS]
     reach = h * (settings[BETA] + settings[DELTA])
-    return h * k * (settings[SPREAD_GAP] - reach * along(moving, pattern, velocity)) - settings[SPREAD_IMPULSE]
+    light = 0.0
+    for i in range(t[at.MOVING]):
+        light += (pattern[i, 0] ** 2 + pattern[i, 1] ** 2) * weight[i, INVERSE_M]
+        light += pattern[i, 2] ** 2 * weight[i, INVERSE_I]
+    moved = reach * along(t, pattern, views.per_body(t, at.VELOCITY))
+    return h * k * (settings[SPREAD_GAP] - moved) - settings[SPREAD_IMPULSE], light
 
 
 @njit(error_model="numpy")
-def lightness_of(moving, body_at, pattern):  # type: ignore[no-untyped-def]
-    """P · M⁻¹ p."""
-    total = 0.0
-    for i in range(moving):
-        b = floats(body_at[i], BODY_WORDS)
-        total += (pattern[i, 0] ** 2 + pattern[i, 1] ** 2) * b[MASS_INVERSE] + pattern[i, 2] ** 2 * b[MOMENT_INVERSE]
-    return total
-
-
-@njit(error_model="numpy")
-def add_spread(moving, pattern, amount, vector):  # type: ignore[no-untyped-def]
-    """Add ``amount`` of the pattern to a vector over the bodies."""
-    for i in range(moving):
-        for j in range(3):
-            vector[i, j] += amount * pattern[i, j]
-
-
-@njit(error_model="numpy")
-def spread_correction(  # type: ignore[no-untyped-def]
-    moving, settings, pattern, column_start, column_rows, diagonal, scaled, solution, image
-):
-    """Turn x = H⁻¹ R into (H + c p pᵀ)⁻¹ R; returns p·ΔV and c."""
+def spread_step(t, residual):  # type: ignore[no-untyped-def]
+    """Turn z into ΔV in the structure's solution, which it leaves y in its image for; returns ΔΛ."""
+    settings, pattern = views.settings(t), views.per_body(t, at.PATTERN)
+    solution, image = views.per_body(t, at.SOLUTION), views.per_body(t, at.IMAGE)
     c = settings[STEP] ** 2 * (settings[BETA] + settings[DELTA]) * settings[SPREAD_STIFFNESS]
-    for i in range(moving):
+    for i in range(t[at.MOVING]):
         for j in range(3):
             image[i, j] = pattern[i, j]
-    substitute(moving, 0, column_start, column_rows, diagonal, scaled, image)
-    share = c * along(moving, pattern, solution) / (1.0 + c * along(moving, pattern, image))
-    for i in range(moving):
+    solve(t, 0, image)
+    change = (residual - c * along(t, pattern, solution)) / (1.0 + c * along(t, pattern, image))
+    for i in range(t[at.MOVING]):
         for j in range(3):
-            solution[i, j] -= share * image[i, j]
-    return along(moving, pattern, solution), c
+            solution[i, j] += change * image[i, j]
+    return change
 
 
 @njit(error_model="numpy")
-def advance_spread(moving, amount, body_at, pattern, settings, velocity):  # type: ignore[no-untyped-def]
+def advance_spread(t, amount):  # type: ignore[no-untyped-def]
     """Λ += amount and V += M⁻¹ p amount."""
+    settings, pattern, weight = views.settings(t), views.per_body(t, at.PATTERN), views.weight(t)
+    velocity = views.per_body(t, at.VELOCITY)
     settings[SPREAD_IMPULSE] += amount
-    for i in range(moving):
-        b = floats(body_at[i], BODY_WORDS)
-        velocity[i, 0] += amount * pattern[i, 0] * b[MASS_INVERSE]
-        velocity[i, 1] += amount * pattern[i, 1] * b[MASS_INVERSE]
-        velocity[i, 2] += amount * pattern[i, 2] * b[MOMENT_INVERSE]
+    for i in range(t[at.MOVING]):
+        velocity[i, 0] += amount * pattern[i, 0] * weight[i, INVERSE_M]
+        velocity[i, 1] += amount * pattern[i, 1] * weight[i, INVERSE_M]
+        velocity[i, 2] += amount * pattern[i, 2] * weight[i, INVERSE_I]

@@ -1,0 +1,103 @@
+"""Mass and inertia of the bodies in the solver, with what keeps pulled joints from whipping.
+
+A joint's force F acts on a body at an arm r, and the direction of F and r are those of the step's start. Where the body
+turns by h ω within the step, the moment it would have at the end is less by h ω k, with k = r·F for a force that pulls
+outwards. Left out, this geometric stiffness is integrated explicitly, which is stable for h² k < 4 I only: light links
+under a heavy load, bending freely, whip about with ever more energy. So where h² k exceeds the body's own inertia and
+the joints' bending stiffness Σ D_θθ, which acts implicitly, the excess is added,
+
+    I + max(0, h² (k - Σ D_θθ) - I) in place of I,   and ω̂ is scaled so that I ω̂ stays what it is:
+
+an implicit moment - h k ω. Forces are those of the last step, tangents too. Nothing is added for forces that push
+inwards, and nothing at all in ordinary structures.
+
+On a structure that nothing holds, the moment impulses h k ω are given back as a rigid turn of the whole about its
+centre of mass. It deforms no joint, so the solution stays one, and the angular momentum stays what it was to rounding.
+"""
+
+from numba import njit
+
+from sim.chipmunk import BODY_WORDS, COSINE, MASS, MOMENT, SINE, X
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.layout import ANCHOR_A, INERTIA_I, INERTIA_M, INVERSE_I, INVERSE_M, TANGENT
+from sim.memory import floats
+
+# Stands for an infinite mass or moment of inertia, so that no 0 · ∞ arises.
+_IMMOVABLE = 1e30
+
+
+@njit(inline="always", error_model="numpy")
+def mass_of(b):  # type: ignore[no-untyped-def]
+    """Mass of a body's struct, finite."""
+    return min(b[MASS], _IMMOVABLE)
+
+
+@njit(inline="always", error_model="numpy")
+def moment_of(b):  # type: ignore[no-untyped-def]
+    """Moment of inertia of a body's struct, finite."""
+    return min(b[MOMENT], _IMMOVABLE)
+
+
+@njit(error_model="numpy")
+def weigh(t):  # type: ignore[no-untyped-def]
+    """Masses of the step; needs gradient, impulses and responses of the last step, before they are renewed."""
+    joint_bodies, body_at, weight = views.joint_bodies(t), views.body_at(t), views.weight(t)
+    jacobian, impulse, response = views.jacobian(t), views.per_joint(t, at.IMPULSE), views.response(t)
+    damping, geometry, settings = views.damping(t), views.geometry(t), views.settings(t)
+    moving, h = t[at.MOVING], settings[at.STEP]
+    reach = h * (settings[at.BETA] + settings[at.DELTA])
+    for i in range(moving):
+        weight[i, INERTIA_I] = 0.0
+    for k in range(t[at.JOINTS]):
+        x, y = impulse[k, 0], impulse[k, 1]
+        if x == 0.0 and y == 0.0:
+            continue
+        # Impulse on b, and less it on a.
+        px, py = jacobian[k, 3] * x + jacobian[k, 9] * y, jacobian[k, 4] * x + jacobian[k, 10] * y
+        bending = h * h * (response[k, TANGENT + 5] - damping[k, 2] / reach)
+        for side in range(2):
+            i = joint_bodies[k, side]
+            if i < moving:
+                b = floats(body_at[i], BODY_WORDS)
+                gx, gy = geometry[k, ANCHOR_A + 2 * side], geometry[k, ANCHOR_A + 2 * side + 1]
+                rx, ry = b[COSINE] * gx - b[SINE] * gy, b[SINE] * gx + b[COSINE] * gy
+                outwards = h * (px * rx + py * ry)
+                weight[i, INERTIA_I] += (outwards if side == 1 else -outwards) - bending
+    t[at.TURNING] = 0
+    for i in range(moving):
+        b = floats(body_at[i], BODY_WORDS)
+        mass, moment = mass_of(b), moment_of(b)
+        if weight[i, INERTIA_I] > moment:
+            moment = weight[i, INERTIA_I]
+            t[at.TURNING] = 1
+        weight[i, INERTIA_M], weight[i, INERTIA_I] = mass, moment
+        weight[i, INVERSE_M] = 1.0 / mass if mass < _IMMOVABLE else 0.0
+        weight[i, INVERSE_I] = 1.0 / moment if moment < _IMMOVABLE else 0.0
+
+
+@njit(error_model="numpy")
+def give_back(t, velocity, out):  # type: ignore[no-untyped-def]
+    """Velocities with the moment of the added inertia given back, if the structure is free; ``out`` may be new."""
+    body_at, weight, moving = views.body_at(t), views.weight(t), t[at.MOVING]
+    for i in range(moving):
+        out[i, 0], out[i, 1], out[i, 2] = velocity[i, 0], velocity[i, 1], velocity[i, 2]
+    if t[at.TURNING] == 0 or t[at.FREE] == 0:
+        return
+    mass, cx, cy = 0.0, 0.0, 0.0
+    for i in range(moving):
+        b = floats(body_at[i], BODY_WORDS)
+        mass, cx, cy = mass + mass_of(b), cx + mass_of(b) * b[X], cy + mass_of(b) * b[X + 1]
+    cx, cy = cx / mass, cy / mass
+    lost, inertia = 0.0, 0.0
+    for i in range(moving):
+        b = floats(body_at[i], BODY_WORDS)
+        x, y = b[X] - cx, b[X + 1] - cy
+        inertia += moment_of(b) + mass_of(b) * (x * x + y * y)
+        lost += (weight[i, INERTIA_I] - moment_of(b)) * velocity[i, 2]
+    turn = lost / inertia
+    for i in range(moving):
+        b = floats(body_at[i], BODY_WORDS)
+        out[i, 0] -= turn * (b[X + 1] - cy)
+        out[i, 1] += turn * (b[X] - cx)
+        out[i, 2] += turn

@@ -1,0 +1,158 @@
+"""The memory in which a structure is solved: arrays, and the control table that tells the kernels where they lie."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pymunk
+
+from sim import chipmunk
+from sim.joint import DuctileJoint
+from sim.kernels import layout as at
+from sim.kernels.contacts import hash_table
+from sim.ordering import Pattern
+
+# Points of contact that a new structure has room for; more is made when needed.
+_ROOM = 8
+
+
+class Tables:
+    """Arrays by their words in the control table, as `sim.kernels.layout` lists them.
+
+    Parameters
+    ----------
+    joints : sequence of DuctileJoint
+    bodies : sequence of pymunk.Body
+        In order of elimination, held ones last.
+    pattern : Pattern
+        Sparsity of the factor over the bodies that are not held.
+    tolerance : float
+        Of Newton's method, see `Structure`.
+    """
+
+    def __init__(
+        self, joints: Sequence[DuctileJoint], bodies: Sequence[pymunk.Body], pattern: Pattern, tolerance: float
+    ) -> None:
+        n, moving, below = len(joints), len(pattern.order), len(pattern.column_rows)
+        index = {body: i for i, body in enumerate(bodies)}
+        ends = np.array([[index[j.a], index[j.b]] for j in joints], dtype=np.int64)
+        slots = [pattern.slot(max(e), min(e)) if max(e) < moving else -1 for e in ends.tolist()]
+        self._parameters, self._parameter_ends = _joined([j.law.parameters() for j in joints])
+        self._states, self._state_ends = _joined([j.law.state() for j in joints])
+        laws = np.empty((n, 5), dtype=np.int64)
+        laws[:, 0] = [j.law.respond_address for j in joints]
+        laws[:, 1] = [j.law.commit_address for j in joints]
+        laws[:, 2] = self._parameters.ctypes.data + 8 * self._parameter_ends[:-1]
+        laws[:, 3] = self._states.ctypes.data + 8 * self._state_ends[:-1]
+        laws[:, 4] = np.diff(self._state_ends)
+        limits = [(j.limits.elongation, j.limits.slip, j.limits.rotation, j.limits.compression_counts) for j in joints]
+        settings = np.zeros(at.SETTINGS_WORDS)
+        settings[[at.BETA, at.DELTA]] = joints[0].scheme
+        settings[at.TOLERANCE] = tolerance**2
+        keys, values = hash_table([chipmunk.body_address(body) for body in bodies])
+        per_joint = (at.DEFORMATION, at.LIGHTNESS, at.IMPULSE, at.RESIDUAL, at.SLOPE)
+        per_body = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION)
+        per_body += (at.EXTERNAL, at.CONTACT_IMPULSE, at.SOLUTION)
+        self._arrays: dict[int, np.ndarray] = {}
+        #: The control table.
+        self.control = np.zeros(at.CONTROL_WORDS, dtype=np.int64)
+        self._hold({word: np.zeros((n, 3)) for word in per_joint})
+        self._hold({word: np.zeros((len(bodies), 3)) for word in per_body})
+        self._hold(
+            {
+                at.BODY_AT: np.array([chipmunk.body_address(body) for body in bodies], dtype=np.int64),
+                at.JOINT_AT: np.array([chipmunk.address(j._constraint) for j in joints], dtype=np.int64),
+                at.JOINT_BODIES: ends,
+                at.GEOMETRY: np.array([j.geometry for j in joints]),
+                at.LAWS: laws,
+                at.STIFFNESS: np.array([j.law.elastic_tangent() for j in joints], dtype=float),
+                at.DAMPING: np.array([j.damping for j in joints], dtype=float),
+                at.LIMITS: np.array(limits, dtype=float),
+                at.SCALE: np.ones(n),
+                at.SCRATCH: np.zeros(laws[:, 4].max()),
+                at.ACTIVE: np.ones(n, dtype=np.int64),
+                at.COLUMN_START: pattern.column_start,
+                at.COLUMN_ROWS: pattern.column_rows,
+                at.FILL_TARGETS: np.append(pattern.fill_targets, 0),
+                at.JOINT_SLOT: np.array(slots, dtype=np.int64),
+                at.SETTINGS: settings,
+                at.LEDGER: np.zeros(at.LEDGER_WORDS),
+                at.JACOBIAN: np.zeros((n, 18)),
+                at.RESPONSE: np.zeros((n, at.RESPONSE_WORDS)),
+                at.WEIGHT: np.zeros((moving, at.WEIGHT_WORDS)),
+                at.SHIFT: np.zeros((len(bodies), 6)),
+                at.DIAGONAL: np.zeros((moving, 9)),
+                at.LOWER_BLOCKS: np.zeros((below, 9)),
+                at.SCALED_BLOCKS: np.zeros((below, 9)),
+                at.RESULT: np.zeros((n, at.RESULT_WORDS)),
+                at.BODY_KEYS: keys,
+                at.BODY_VALUES: values,
+            }
+        )
+        # Where the bodies were before is not known.
+        self[at.LAST_POSITION][:] = np.nan
+        self.control[[at.BODIES, at.MOVING, at.JOINTS, at.LOWER]] = len(bodies), moving, n, below
+        self.control[at.FAULT] = -1
+        self.control[at.BREAKABLE] = int(np.isfinite(self[at.LIMITS][:, :3]).any())
+        self.control[at.HASH_LENGTH] = len(keys)
+        self.make_room(_ROOM)
+
+    def __getitem__(self, word: int) -> np.ndarray:
+        return self._arrays[word]
+
+    def _hold(self, arrays: dict[int, np.ndarray]) -> None:
+        self._arrays |= arrays
+        for word, array in arrays.items():
+            self.control[word] = array.ctypes.data
+
+    def make_room(self, contacts: int) -> None:
+        """Memory for so many points of contact."""
+        places = np.zeros((contacts, at.PLACE_WORDS), dtype=np.int64)
+        self._hold({at.PLACES: places, at.TOUCHES: np.zeros((contacts, at.TOUCH_WORDS))})
+        self.control[at.ROOM] = contacts
+
+    def make_pattern(self) -> None:
+        """Memory for a load pattern, and let it act."""
+        if not self.control[at.SPREAD]:
+            shape = (int(self.control[at.BODIES]), 3)
+            self._hold({at.PATTERN: np.zeros(shape), at.IMAGE: np.zeros(shape)})
+            self.control[at.SPREAD] = 1
+
+    def parameters(self, joint: int) -> np.ndarray:
+        """Parameters of a joint's law, to be changed in place."""
+        first, last = self._parameter_ends[joint : joint + 2]
+        return self._parameters[first:last]
+
+    def state(self, joint: int) -> np.ndarray:
+        """State of a joint's law, to be changed in place."""
+        first, last = self._state_ends[joint : joint + 2]
+        return self._states[first:last]
+
+    def kept(self) -> dict[str, np.ndarray]:
+        """Everything that the next step depends on and that the joints and bodies do not say themselves."""
+        words = (*_KEPT, *((at.PATTERN, at.IMAGE) if self.control[at.SPREAD] else ()))
+        arrays = {str(word): self[word].copy() for word in words}
+        return arrays | {"states": self._states.copy(), "control": self.control[list(_KEPT_CONTROL)].copy()}
+
+    def restore(self, kept: dict[str, np.ndarray]) -> None:
+        """Put back what `kept` gave."""
+        if str(at.PATTERN) in kept:
+            self.make_pattern()
+        self._states[:] = kept["states"]
+        self.control[list(_KEPT_CONTROL)] = kept["control"]
+        for word, array in self._arrays.items():
+            if str(word) in kept:
+                array[:] = kept[str(word)]
+
+
+# The plastic state is kept beside these. Gradient and response of the last step weigh the bodies of the next.
+_KEPT = (at.SETTINGS, at.LEDGER, at.ACTIVE, at.IMPULSE, at.JACOBIAN, at.RESPONSE, at.RESULT)
+_KEPT += (at.LAST_VELOCITY, at.LAST_POSITION, at.SHIFT)
+_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING)
+
+
+def _joined(pieces: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """All pieces in one array, and where each begins and the last one ends."""
+    ends = np.concatenate([[0], np.cumsum([len(piece) for piece in pieces])]).astype(np.int64)
+    return np.concatenate([np.asarray(piece, dtype=float) for piece in pieces]), ends

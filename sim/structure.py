@@ -88,10 +88,10 @@ class Structure:
                 last[i] = moved.get(body, (*body.velocity, body.angular_velocity))
         for i, joint in enumerate(self.joints):
             if joint.structure is not None:
-                old, k = joint.structure._tables, joint.index
-                self._result[i] = old[at.RESULT][k]
-                self._tables[at.ACTIVE][i] = old[at.ACTIVE][k]
-                self._tables.state(i)[:] = old.state(k)
+                before, k = joint.structure._tables, joint.index
+                self._result[i] = before[at.RESULT][k]
+                self._tables[at.ACTIVE][i] = before[at.ACTIVE][k]
+                self._tables.state(i)[:] = before.state(k)
             self._adopt(i)
         ledger = self._tables[at.LEDGER]
         mass = [(b.mass, b.mass, b.moment) for b in self.bodies if b.body_type == pymunk.Body.DYNAMIC]

@@ -52,8 +52,8 @@ class Tables:
         settings[at.TOLERANCE] = tolerance**2
         keys, values = hash_table([chipmunk.body_address(body) for body in bodies])
         per_joint = (at.DEFORMATION, at.LIGHTNESS, at.IMPULSE, at.RESIDUAL, at.SLOPE)
-        per_body = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION)
-        per_body += (at.EXTERNAL, at.CONTACT_IMPULSE, at.SOLUTION)
+        velocities = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION)
+        per_body = (*velocities, at.EXTERNAL, at.CONTACT_IMPULSE, at.SOLUTION)
         self._arrays: dict[int, np.ndarray] = {}
         #: The control table.
         self.control = np.zeros(at.CONTROL_WORDS, dtype=np.int64)
@@ -147,8 +147,8 @@ class Tables:
 
 
 # The plastic state is kept beside these. Gradient and response of the last step weigh the bodies of the next.
-_KEPT = (at.SETTINGS, at.LEDGER, at.ACTIVE, at.IMPULSE, at.JACOBIAN, at.RESPONSE, at.RESULT)
-_KEPT += (at.LAST_VELOCITY, at.LAST_POSITION, at.SHIFT)
+_OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.JACOBIAN, at.RESPONSE, at.RESULT)
+_KEPT = (*_OF_JOINTS, at.SETTINGS, at.LEDGER, at.LAST_VELOCITY, at.LAST_POSITION, at.SHIFT)
 _KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING)
 
 

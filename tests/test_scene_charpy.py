@@ -10,6 +10,7 @@ import pytest
 from test_sim_world import run
 
 from scene import builtin_text
+from sim import energy
 
 STEPS = (0.05e-3, 0.1e-3, 0.2e-3, 0.5e-3, 1e-3)
 HIT = 0.5 * 19.5 * 4.954**2
@@ -24,14 +25,16 @@ def passing_angle() -> float:
 def test_the_hammer_loses_the_plastic_work_at_any_step() -> None:
     lost, work = [], []
     for dt in STEPS:
-        _, found = run("charpy", dt)
+        world, found = run("charpy", dt)
         lost.append(-found["change of the hammer's energy"])
         work.append(found["plastic work in the notch"])
         assert found["plastic rotation of the notch"] == pytest.approx(passing_angle(), rel=0.02)
         assert found["broken"] == 0.0
         # A hundredth of the specimen's thickness.
         assert found["deepest overlap of the hammer"] < 0.1e-3
-        assert lost[-1] == pytest.approx(work[-1], rel=0.02)
+        # Beside the plastic work, what the specimen flies off with, friction and impacts: the ledger has it all.
+        assert lost[-1] == pytest.approx(work[-1], rel=0.03)
+        assert lost[-1] == pytest.approx(energy(world.space).external, rel=0.01)
         assert work[-1] == pytest.approx(121.6, rel=0.02)
     assert max(lost) / min(lost) < 1.05
     assert max(work) / min(work) < 1.05

@@ -1,7 +1,7 @@
 """The ledger: where the energy that a structure was given has gone.
 
-With a body's momentum changed in a step by p = p_ext + p_J + p_c + p_g (from outside, by joints, by contacts, and by the
-geometric inertia of `inertia`), from V₀ to V₁,
+With a body's momentum changed in a step by p = p_ext + p_J + p_c + p_g (from outside, by joints, by contacts, and by
+the geometric inertia of `inertia`), from V₀ to V₁,
 
     ΔT = p · ½ (V₀ + V₁) = p · V_w - (w - ½) ΔV·M ΔV,   V_w = V₀ + w ΔV, summed over the bodies,
 

@@ -75,6 +75,7 @@ function facts(recording, sampling) {
 
 function showControls(recording, player, stage) {
   byId("scrub").max = recording.duration || 1;
+  byId("joint-section").hidden = recording.joints.length === 0;
   byId("speed").append(...SPEEDS.map((speed) => new Option(`${speed} ×`, speed)));
   for (const box of document.querySelectorAll("[data-force]")) box.checked = stage.forces.shown[box.dataset.force];
   if (recording.reference) {

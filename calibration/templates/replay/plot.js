@@ -60,7 +60,7 @@ class Plot {
     pen.strokeStyle = palette.line;
     pen.textBaseline = "middle";
     pen.textAlign = "right";
-    for (const mark of ticks(this.low / factor, this.high / factor, 3)) {
+    for (const mark of ticks(this.low / factor, this.high / factor, 4)) {
       const y = Math.round(this.y(mark * factor)) + 0.5;
       pen.beginPath(); pen.moveTo(LEFT, y); pen.lineTo(LEFT + this.innerWidth, y); pen.stroke();
       pen.fillText(String(Number(mark.toPrecision(6))).replace("-", MINUS), LEFT - 5, y);

@@ -12,7 +12,7 @@ class Stage {
     this.camera = new Camera(canvas);
     this.bounds = this.extent(() => true);
     this.structureBounds = this.extent((body) => body.inStructure);
-    this.structureSize = this.sizeOfStructure();
+    this.measureStructure();
     this.forces = new ForceDrawing(recording, this.structureSize);
     this.showReference = true;
   }
@@ -62,13 +62,15 @@ class Stage {
     return [x[0], y[0], x[1], y[1]];
   }
 
-  // Diagonal around the joints at the start [m].
-  sizeOfStructure() {
+  // Of the joints at the start: the diagonal around them, and how far apart neighbours are, as a rule [m].
+  measureStructure() {
     const start = { k: 0, next: 0, share: 0 };
-    const places = this.recording.joints.map((_, j) => this.recording.place(j, start)).filter(Boolean);
-    const span = (i) => Math.max(...places.map((p) => p.a[i])) - Math.min(...places.map((p) => p.a[i]));
-    const size = places.length > 0 ? Math.hypot(span(0), span(1)) : 0;
-    return size || 0.3 * Math.hypot(this.bounds[2] - this.bounds[0], this.bounds[3] - this.bounds[1]);
+    const places = this.recording.joints.map((_, j) => this.recording.place(j, start)).filter(Boolean).map(({ a }) => a);
+    const span = (i) => Math.max(...places.map((p) => p[i])) - Math.min(...places.map((p) => p[i]));
+    const all = Math.hypot(this.bounds[2] - this.bounds[0], this.bounds[3] - this.bounds[1]);
+    this.structureSize = (places.length > 1 && Math.hypot(span(0), span(1))) || 0.3 * all;
+    const nearest = places.map((p, i) => Math.min(...places.map((q, j) => (i === j ? Infinity : Math.hypot(p[0] - q[0], p[1] - q[1])))));
+    this.spacing = nearest.sort((one, other) => one - other)[nearest.length >> 1] || Infinity;
   }
 
   draw(moment, chosen) {
@@ -163,8 +165,7 @@ class Stage {
 
   // Radius of a joint's mark: smaller where joints stand close on the screen.
   get jointRadius() {
-    const apart = this.camera.scale * this.structureSize / Math.max(1, this.recording.joints.length);
-    return Math.min(6, Math.max(2.5, 0.3 * apart));
+    return Math.min(6, Math.max(2.5, 0.3 * this.camera.scale * this.spacing));
   }
 
   drawJoint(pen, j, { a, b }, { k }, chosen) {

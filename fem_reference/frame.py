@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -132,7 +133,11 @@ class Frame:
 
     def dofs_of(self, axis: int) -> np.ndarray:
         """Degrees of freedom that displace along global x (0) or y (1)."""
-        return np.unique(self.dofs[:, [axis, axis + 3]])
+        return self._along[axis]
+
+    @cached_property
+    def _along(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.unique(self.dofs[:, [0, 3]]), np.unique(self.dofs[:, [1, 4]])
 
     def undeformed(self) -> np.ndarray:
         """Slips of a virgin frame, (n, 2, fibres, layers)."""

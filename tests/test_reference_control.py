@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from cantilevers import cantilever
@@ -15,14 +16,8 @@ EA = 210e9 * 0.01
 HALF, RISE = 1.0, 0.1
 
 
-def changed(scene: Scene, **fields: Any) -> Scene:
-    return type(scene)(**{**{name: getattr(scene, name) for name in scene.__struct_fields__}, **fields})
-
-
 def controlled(scene: Scene, control: str, **fields: Any) -> Scene:
-    push = scene.push
-    values = {name: getattr(push, name) for name in push.__struct_fields__}
-    return changed(scene, pushed=type(push)(**{**values, "control": control, **fields}))
+    return msgspec.structs.replace(scene, pushed=msgspec.structs.replace(scene.push, control=control, **fields))
 
 
 def truss(distance: float, spring: float = 0.0) -> Scene:
@@ -38,8 +33,8 @@ def truss(distance: float, spring: float = 0.0) -> Scene:
     hinged = {}
     for name, m in scene.members.items():
         material = m.material if name != "C-T" else type(m.material)("soft", spring / 0.01, 1e12, 1.0)
-        hinged[name] = type(m)(m.start, m.end, m.section, material, m.theory, ("from", "to"))
-    return changed(scene, members=hinged)
+        hinged[name] = msgspec.structs.replace(m, material=material, releases=("from", "to"))
+    return msgspec.structs.replace(scene, members=hinged)
 
 
 def truss_load(sag: np.ndarray) -> np.ndarray:

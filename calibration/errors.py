@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.hinges import HingePair, hinge_pairs, in_order
-from fem_reference import Pushover
+from fem_reference import PushAnswer
 from scene import Scene
 from sim import Push
 
@@ -44,7 +44,7 @@ class Errors:
     loop_energy: float | None
 
 
-def compare(reference: Pushover, push: Push) -> Errors:
+def compare(reference: PushAnswer, push: Push) -> Errors:
     """Errors of ``push`` at the points of ``reference``, whose displacements were its distances."""
     load = push.load_at_distances
     largest = float(np.abs(reference.load).max())
@@ -91,7 +91,7 @@ class Findings:
         return model / reference - 1.0 if reference > 0.0 else None
 
 
-def find(scene: Scene, reference: Pushover, push: Push, frequency: tuple[float, float]) -> Findings:
+def find(scene: Scene, reference: PushAnswer, push: Push, frequency: tuple[float, float]) -> Findings:
     """Hinges and frequency of a model, whose push is ``push``."""
     pairs = hinge_pairs(scene, reference, push)
     return Findings(pairs, in_order(pairs) if pairs else None, frequency)

@@ -14,6 +14,7 @@ import pymunk
 
 from calibration.trials import Trial
 from calibration.tuning import Calibration
+from fem_reference import Pushover
 from scene import Scene
 from sim import DuctileJoint, Model, assemble
 
@@ -47,7 +48,7 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
             "load": reference.load.tolist(),
             "error_estimate": reference.error_estimate,
             "elements": reference.elements,
-            "fibres": reference.fibres,
+            "fibres": reference.fibres if isinstance(reference, Pushover) else 0,
             "seconds": reference.seconds,
         },
         "model": {

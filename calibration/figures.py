@@ -36,9 +36,7 @@ def curves(result: Calibration) -> Figure:
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.6), layout="constrained")
         top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
-        top.plot(
-            1e3 * reference.displacement, 1e-3 * reference.load, color=REFERENCE, lw=2.5, label="reference (fibre FEM)"
-        )
+        top.plot(1e3 * reference.displacement, 1e-3 * reference.load, color=REFERENCE, lw=2.5, label="reference (FEM)")
         label = f"{push.bodies} rigid bodies, {push.joints} joints"
         top.plot(1e3 * push.displacement, 1e-3 * push.load, color=MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
         factor = any(load.kind == "proportional" for load in result.scene.loads)

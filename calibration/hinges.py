@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference import Pushover
+from fem_reference import PushAnswer
 from fem_reference.hinge_events import plastic_moment
 from scene import Scene
 from sim import JointPlace, Push
@@ -41,7 +41,7 @@ class HingePair:
     step: int
 
 
-def hinge_pairs(scene: Scene, reference: Pushover, push: Push) -> tuple[HingePair, ...]:
+def hinge_pairs(scene: Scene, reference: PushAnswer, push: Push) -> tuple[HingePair, ...]:
     """The reference's hinges, in its order."""
     pairs = []
     for hinge in reference.hinges:

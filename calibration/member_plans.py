@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from fem_reference import MemberResult, Pushover
+from fem_reference import MemberResult, PushAnswer, Pushover
 from scene import Scene
 from sim import MemberModel
 
@@ -67,9 +67,9 @@ class MemberPlan:
         return f"{how}: {model.joints} {model.law} joints"
 
 
-def member_plans(scene: Scene, reference: Pushover, target_error: float) -> dict[str, MemberPlan]:
+def member_plans(scene: Scene, reference: PushAnswer, target_error: float) -> dict[str, MemberPlan]:
     """What each member of ``scene`` needs for a path error of ``target_error``."""
-    if any(name not in reference.members for name in scene.members):
+    if not isinstance(reference, Pushover):
         return {name: MemberPlan("elastic-plastic", math.nan, math.nan) for name in scene.members}
     energy = {name: _elastic_energy(scene, name, reference.members[name]) for name in scene.members}
     total = np.maximum(sum(energy.values()), np.finfo(float).tiny)

@@ -99,7 +99,7 @@ def _members(result: Pushover | PlanePush) -> dict[str, Any]:
                 "shape": axis.shape.tolist(),
                 "error_estimate": {"shape": axis.error_estimate},
             }
-            for name, axis in result.members.items()
+            for name, axis in result.axes.items()
         }
     return {
         name: {

@@ -14,7 +14,8 @@ from calibration.planner import candidates, cheaper, groups, relative_cost
 from calibration.small_displacements import push_over_small
 from calibration.trials import Failure, Trial
 from capacity import Capacity
-from fem_reference import Pushover, natural_modes, pushover
+from fem_reference import PushAnswer, natural_modes
+from fem_reference import push_over as follow
 from scene import Scene
 from sim import Model, Push, SolverError, assemble, push_over
 from sim import natural_modes as modes_of_joints
@@ -38,7 +39,7 @@ class Calibration:
     scene : Scene
     capacity : dict[str, Capacity]
         By member.
-    reference : Pushover
+    reference : Pushover or PlanePush
     plans : dict[str, MemberPlan]
         What each member needs.
     trials : tuple of Trial
@@ -56,7 +57,7 @@ class Calibration:
     name: str
     scene: Scene
     capacity: dict[str, Capacity]
-    reference: Pushover
+    reference: PushAnswer
     plans: dict[str, MemberPlan]
     trials: tuple[Trial, ...]
     failures: tuple[Failure, ...]
@@ -123,7 +124,7 @@ def calibrate(
     if not 0.0 < target_error < 1.0:
         raise ValueError(f"a target error of {target_error:g} is not between 0 and 1")
     tolerance = min(target_error / REFERENCE_MARGIN, REFERENCE_TOLERANCE)
-    reference = pushover(scene, tolerance, lambda share: watch("reference", share))
+    reference = follow(scene, tolerance, lambda share: watch("reference", share))
     plans = member_plans(scene, reference, target_error)
     bench = Bench(scene, reference)
     models = candidates(scene, plans)
@@ -162,7 +163,7 @@ class Bench:
     failures : list of Failure
     """
 
-    def __init__(self, scene: Scene, reference: Pushover) -> None:
+    def __init__(self, scene: Scene, reference: PushAnswer) -> None:
         self.scene, self.reference = scene, reference
         self.trials: list[Trial] = []
         self.failures: list[Failure] = []

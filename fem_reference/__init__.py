@@ -7,7 +7,7 @@ from fem_reference.member_results import MemberErrors, MemberPath, MemberResult
 from fem_reference.modes import Modes, natural_modes
 from fem_reference.paths import NotConverged
 from fem_reference.plane import Fields, PlanePush, field_files, plane_push
-from fem_reference.push_over import default_tolerance, push_over
+from fem_reference.push_over import PushAnswer, default_tolerance, push_over
 from fem_reference.pushover import Energy, Pushover, pushover
 from fem_reference.validity import remarks, wants_plane_stress
 
@@ -22,6 +22,7 @@ __all__ = [
     "MotionResult",
     "NotConverged",
     "PlanePush",
+    "PushAnswer",
     "Pushover",
     "default_tolerance",
     "field_files",

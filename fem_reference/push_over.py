@@ -11,13 +11,16 @@ from fem_reference.pushover import Pushover, pushover
 from fem_reference.validity import wants_plane_stress
 from scene import Scene
 
+#: Either answer; what both have is the same.
+PushAnswer = Pushover | PlanePush
+
 #: Estimated error that is aimed at for beams and frames when nothing else is said.
 BEAM_TOLERANCE = 5e-4
 
 
 def push_over(
     scene: Scene, tolerance: float | None = None, watch: Callable[[float], None] = lambda share: None
-) -> Pushover | PlanePush:
+) -> PushAnswer:
     """Follow the push of ``scene`` by beams or as a plane stress continuum; ``method`` of the answer says by which.
 
     Parameters

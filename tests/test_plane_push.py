@@ -181,7 +181,7 @@ def test_a_scene_is_answered_in_plane_stress(turn: float) -> None:
     assert found.energy.error_estimate <= 3e-3
     assert found.residual_error == 0.0
     # The axis: the root stays, the tip goes along the push, and x, y are the scene's.
-    axis = found.members["beam"]
+    axis = found.axes["beam"]
     at_tip = int(np.argmin(axis.point) if turn else np.argmax(axis.point))
     np.testing.assert_allclose(axis.shape[at_tip], 1e-3 * np.array(scene.push_direction()), atol=2e-4)
     assert axis.shape[at_tip] @ scene.push_direction() == pytest.approx(1e-3, rel=1e-9)

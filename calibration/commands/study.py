@@ -77,7 +77,7 @@ def study(
     from calibration.study.points import Point, hard_points, model_points, total_cost
     from calibration.study.sweep import sweep
     from calibration.tuning import REFERENCE_TOLERANCE
-    from fem_reference import pushover
+    from fem_reference import push_over
 
     journal = Journal(folder.path)
     points: list[Point] = [
@@ -85,7 +85,7 @@ def study(
         *(hard_points() if hard_cases else []),
     ]
     with workers(executor) as hired, progress_bar(messages) as watch:
-        reference = pushover(loaded, REFERENCE_TOLERANCE, lambda part: watch("reference", part))
+        reference = push_over(loaded, REFERENCE_TOLERANCE, lambda part: watch("reference", part))
         keys = point_keys(loaded, points)
         left = [point for key, point in keys.items() if key not in journal.results]
         whole, done = total_cost(left), 0.0

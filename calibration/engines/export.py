@@ -12,7 +12,7 @@ from calibration.engines.text import comment
 from calibration.engines.to_pymunk import module_text, push_module
 from calibration.errors import compare
 from calibration.tuning import REFERENCE_TOLERANCE, push_model
-from fem_reference import Pushover, pushover
+from fem_reference import PushAnswer, push_over
 from scene import Scene
 from sim import Model
 
@@ -85,7 +85,7 @@ def export(scene: Scene, name: str, engine: str, model: Model, joints: int | Non
         Of each joint's rotation [-].
     """
     target = ENGINES[engine]
-    reference = None if scene.pushed is None else pushover(scene, REFERENCE_TOLERANCE)
+    reference = None if scene.pushed is None else push_over(scene, REFERENCE_TOLERANCE)
     numbers = (joints,) if joints is not None else TRIED if target.installed and reference is not None else (_UNTRIED,)
     models = [replace(model, law=LAW, joints=number) for number in numbers]
     attempts: list[Attempt] = []
@@ -113,7 +113,7 @@ def _cheapest_of_the_best(attempts: list[Attempt]) -> Attempt | None:
 
 
 def _attempts(
-    scene: Scene, target: Engine, models: list[Model], reference: Pushover, damping_ratio: float
+    scene: Scene, target: Engine, models: list[Model], reference: PushAnswer, damping_ratio: float
 ) -> list[Attempt]:
     assert target.run is not None
     attempts = []
@@ -132,7 +132,7 @@ def _attempts(
     return attempts
 
 
-def _solved_as_one(scene: Scene, model: Model, reference: Pushover) -> CurveErrors:
+def _solved_as_one(scene: Scene, model: Model, reference: PushAnswer) -> CurveErrors:
     """Errors of the same joints in this project's own solver."""
     errors = compare(reference, push_model(scene, replace(model, iterations=2), reference.displacement))
     return CurveErrors(errors.path_max, errors.collapse_load)
@@ -147,7 +147,7 @@ def _expected(
     best: Attempt,
     attempts: list[Attempt],
     handover: Handover,
-    reference: Pushover | None,
+    reference: PushAnswer | None,
     model_errors: CurveErrors | None,
 ) -> list[str]:
     if reference is None or model_errors is None:

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from calibration.engines.handover import Handover, PieceLoad, PushPoint
-from fem_reference import Pushover
+from fem_reference import PushAnswer
 
 #: How long a push takes in simulated seconds, …
 DURATION = 4.0
@@ -145,7 +145,7 @@ class CurveErrors:
     collapse_load: float
 
 
-def curve_errors(reference: Pushover, pushed: Pushed) -> CurveErrors:
+def curve_errors(reference: PushAnswer, pushed: Pushed) -> CurveErrors:
     """Errors at the reference's points, whose displacements were the pusher's."""
     points = np.arange(len(reference.load))
     turns = np.count_nonzero(np.diff(np.sign(np.diff(reference.displacement))))

@@ -14,7 +14,7 @@ from calibration.study.hard_cases import let_down
 from calibration.study.points import HardPoint, ModelPoint, Point
 from calibration.tuning import push_model
 from capacity import InputError
-from fem_reference import Pushover
+from fem_reference import PushAnswer
 from scene import Scene
 from sim import SolverError
 
@@ -22,7 +22,7 @@ from sim import SolverError
 REPEATS = 3
 
 
-def measure(scene: Scene, reference: Pushover, point: Point) -> dict[str, Any]:
+def measure(scene: Scene, reference: PushAnswer, point: Point) -> dict[str, Any]:
     """Errors and cost of ``point``, as a dict for JSON; with ``failure`` alone when it could not be stepped."""
     try:
         if isinstance(point, HardPoint):
@@ -34,7 +34,7 @@ def measure(scene: Scene, reference: Pushover, point: Point) -> dict[str, Any]:
         return {"failure": str(error)}
 
 
-def _ductile(scene: Scene, reference: Pushover, point: ModelPoint) -> dict[str, Any]:
+def _ductile(scene: Scene, reference: PushAnswer, point: ModelPoint) -> dict[str, Any]:
     pushes = [push_model(scene, point.model, reference.displacement) for _ in range(REPEATS)]
     push = pushes[0]
     errors = compare(reference, push)
@@ -46,7 +46,7 @@ def _ductile(scene: Scene, reference: Pushover, point: ModelPoint) -> dict[str, 
     }
 
 
-def _stock(scene: Scene, reference: Pushover, point: ModelPoint, turn: Turn) -> dict[str, Any]:
+def _stock(scene: Scene, reference: PushAnswer, point: ModelPoint, turn: Turn) -> dict[str, Any]:
     handover = hand_over(scene, point.model)
     assert handover.push is not None  # or there were no reference
     text = module_text(handover, turn, "")

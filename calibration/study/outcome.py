@@ -11,7 +11,7 @@ from typing import Any
 from calibration.export import versions
 from calibration.study.measure import REPEATS
 from calibration.study.points import HardPoint, ModelPoint, Point
-from fem_reference import Pushover
+from fem_reference import PushAnswer
 
 #: Share of an error by which another must be smaller to be worth its time.
 NOTICEABLE = 0.02
@@ -25,7 +25,7 @@ class Outcome:
     ----------
     name, title : str
         Of the scene.
-    reference : Pushover
+    reference : Pushover or PlanePush
     models : tuple of (ModelPoint, dict)
         With what `calibration.study.measure` found, those that could be stepped.
     hard : tuple of (HardPoint, dict)
@@ -35,7 +35,7 @@ class Outcome:
 
     name: str
     title: str
-    reference: Pushover
+    reference: PushAnswer
     models: tuple[tuple[ModelPoint, dict[str, Any]], ...]
     hard: tuple[tuple[HardPoint, dict[str, Any]], ...]
     failures: tuple[tuple[Point, str], ...]
@@ -56,7 +56,7 @@ def speed(found: Mapping[str, Any]) -> float:
 
 
 def outcome(
-    name: str, title: str, reference: Pushover, points: Sequence[Point], results: Sequence[dict[str, Any]]
+    name: str, title: str, reference: PushAnswer, points: Sequence[Point], results: Sequence[dict[str, Any]]
 ) -> Outcome:
     """Sort what was found by what it is about."""
     models: list[tuple[ModelPoint, dict[str, Any]]] = []

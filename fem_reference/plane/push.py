@@ -97,8 +97,8 @@ class PlanePush:
     energy : Energy
     imbalance : float
         Largest sum of the out-of-balance forces, over the largest load [-].
-    members : dict[str, AxisShape]
-        The member; none of a mesh.
+    axes : dict[str, AxisShape]
+        By member; none of a mesh.
     fields : Fields
         States on the finest mesh.
     """
@@ -115,7 +115,7 @@ class PlanePush:
     residual_error: float
     energy: Energy
     imbalance: float
-    members: dict[str, AxisShape]
+    axes: dict[str, AxisShape]
     fields: Fields
 
 
@@ -183,7 +183,7 @@ def plane_push(
         residual_error=SAFETY * abs(fine.displacement[-1] - coarse.displacement[-1]),
         energy=Energy(external, elastic, plastic, SAFETY * max(_difference(a, b, scale) for a, b in pairs)),
         imbalance=fine.imbalance,
-        members=_members(scene, body, coarse_body),
+        axes=_axes(scene, body, coarse_body),
         fields=Fields(
             body.continuum, tuple(at for at, _ in fine.snapshots), tuple(state for _, state in fine.snapshots)
         ),
@@ -197,7 +197,7 @@ def _difference(fine: list[float], coarse: list[float], scale: float = 0.0) -> f
     return float(np.abs(a - b).max() / (scale or np.abs(a).max())) if both > 1 else 1.0
 
 
-def _members(scene: Scene, fine: Body, coarse: Body) -> dict[str, AxisShape]:
+def _axes(scene: Scene, fine: Body, coarse: Body) -> dict[str, AxisShape]:
     found = {}
     for name in scene.members:
         c, s, _ = scene.axis(name)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pymunk
 
+from sim.energy import Energy
 from sim.joint import DuctileJoint
 from sim.structure import Structure
 
@@ -30,6 +33,7 @@ class JointWatch:
         self._row: dict[DuctileJoint, int] = {}
         self._rows: dict[Structure, np.ndarray] = {}
         self._present: list[int] = []
+        self._spent = Energy()
 
     def note(self) -> None:
         """Take note of a step."""
@@ -47,6 +51,7 @@ class JointWatch:
         for past in [structure for structure in self._rows if structure not in current]:
             self._read(past)
             del self._rows[past]
+            self._spent += _without_what_passes_on(past.energy)
         for structure in current:
             if structure is not None:
                 self._rows.setdefault(structure, np.array([self._row[joint] for joint in structure.joints]))
@@ -60,7 +65,16 @@ class JointWatch:
         state[gone, FORCE] = 0.0
         return state
 
+    def ledger(self) -> Energy:
+        """Ledger of all structures that there are or were; bodies that come off take their kinetic energy with them."""
+        return sum((structure.energy for structure in self._rows), self._spent)
+
     def _read(self, structure: Structure) -> None:
         rows, force, used = self._rows[structure], structure.force, structure.capacity_used
         self.peak[rows] = np.maximum(self.peak[rows], np.abs(force))
         self._state[rows] = np.column_stack([force, used, (used >= 1.0) & ~structure.active])
+
+
+def _without_what_passes_on(energy: Energy) -> Energy:
+    """Of a structure that is no more: its successors begin with what is kinetic and elastic, as given from outside."""
+    return replace(energy, external=energy.external - energy.kinetic - energy.elastic, kinetic=0.0, elastic=0.0)

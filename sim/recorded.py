@@ -122,7 +122,7 @@ class Recording:
         Largest N, Q and M in any step, without sign, between the sampled times, too.
     contacts : Contacts
     energy : dict[str, (t,) float]
-        Energy ledger of all structures by kind [J]; see `Structure.energy`.
+        Ledger of all structures that there are or were, by account [J]; see `sim.energy.Energy`.
     """
 
     title: str

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 import pymunk
 
 from sim import chipmunk
+from sim.energy import Energy
 from sim.joint import DuctileJoint
 from sim.joint_watch import BROKEN, FORCE, USED, JointWatch
 from sim.kernels import layout as at
@@ -36,7 +37,7 @@ class _Sample:
     motion: np.ndarray
     state: np.ndarray
     contacts: np.ndarray
-    energy: dict[str, float]
+    energy: Energy
 
 
 class _Seen:
@@ -145,7 +146,10 @@ class Recorder:
                 point=touching[:, :2],
                 force=touching[:, 2:],
             ),
-            energy={key: np.array([sample.energy.get(key, 0.0) for sample in samples]) for key in samples[-1].energy},
+            energy={
+                account.name: np.array([getattr(sample.energy, account.name) for sample in samples])
+                for account in fields(Energy)
+            },
         )
 
     def _keep(self) -> None:
@@ -166,7 +170,7 @@ class Recorder:
                 motion=motion,
                 state=self._joints.state(),
                 contacts=np.array(contacts, dtype=float).reshape(-1, 4),
-                energy={},
+                energy=self._joints.ledger(),
             )
         )
 

@@ -192,6 +192,18 @@ def test_forces_are_drawn_to_a_scale_that_can_be_changed(page: Any) -> None:
     assert "M " not in legend()
 
 
+def test_the_energy_ledger_is_told(page: Any, recording: Recording) -> None:
+    k = 20
+    page.execute_script(f"replay.player.seek({recording.time[k]:.9f} + 1e-6)")
+    settle(page)
+    rows = page.find_elements("css selector", "#energy tr")
+    told = {row.text.split()[0]: row.find_elements("css selector", "td")[1].text for row in rows}
+    assert list(told) == list(recording.energy)
+    largest = max(np.abs(values).max() for values in recording.energy.values())
+    for name, values in recording.energy.items():
+        assert number(told[name]) == pytest.approx(values[k], rel=1e-3, abs=1e-4 * largest)
+
+
 def test_keys(page: Any) -> None:
     from selenium.webdriver import ActionChains, Keys
 

@@ -7,6 +7,7 @@ import pymunk
 import pytest
 from replay_runs import DEPTH, LENGTH, PIECES, SECTION, STEEL, cantilever, falling_ball, world
 
+from capacity import capacity
 from sim.recording import Recorder, Recording
 
 
@@ -148,3 +149,18 @@ def test_shapes_are_those_of_the_bodies(recording: Recording) -> None:
     ball = recording.bodies[-1]
     assert not ball.in_structure
     assert ball.outlines[0].kind == "circle"
+
+
+def test_the_ledger_closes_while_joints_break(recording: Recording) -> None:
+    """External work is what is stored and dissipated, in the structures that there are and were."""
+    energy = recording.energy
+    spent = sum(energy[name] for name in ("kinetic", "elastic", "plastic", "contact", "viscous", "numerical"))
+    largest = np.abs(energy["external"]).max()
+    np.testing.assert_allclose(energy["external"], spent, atol=1e-9 * largest)
+    assert np.all(np.diff(energy["plastic"]) >= -1e-9 * largest)
+    when = int(recording.broken[:, 0].argmax())
+    # The root yields at M_max until it has turned by its limit, 0.12; what it stored is lost with it.
+    moment, stiffness = recording.joints[0].maxima[2], capacity(SECTION, STEEL).EI / (LENGTH / PIECES)
+    assert energy["plastic"][when] == pytest.approx(0.12 * moment + 0.5 * moment**2 / stiffness, rel=1e-3)
+    kinetic = 0.5 * STEEL.density * SECTION.area * LENGTH / PIECES * (recording.velocity[-1, 1:-1] ** 2).sum()
+    assert energy["kinetic"][-1] == pytest.approx(kinetic, rel=0.2, abs=1e-3)

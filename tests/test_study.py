@@ -210,3 +210,11 @@ def test_frontier_of_models_that_fail_is_empty() -> None:
     study = outcome("s", "t", reference, [point], [{"failure": "refused"}])
     assert study.frontier == []
     assert study.failures == ((point, "refused"),)
+
+
+def test_a_model_that_is_rigid_until_it_yields_has_errors_too() -> None:
+    """Its load is there from the first point on: no stiffness, no first yield, but a path error near one."""
+    scene = load_scene("portal-frame")
+    reference = pushover(scene, 0.01)
+    found = measure(scene, reference, ModelPoint("ductile", Model("lobatto", 3, "rigid-plastic")))
+    assert found["path_max"] == pytest.approx(1.0, abs=0.1)

@@ -24,6 +24,8 @@ from scene.actions import unit_vector
 
 #: Estimated error that is aimed at when nothing else is said.
 TOLERANCE = 0.01
+#: Share of the largest displacement of any node that is rounding.
+_NOTHING = 1e-9
 _COARSEST = (10, 24, 250)
 #: Times at which whole members are kept.
 _STATES = 26
@@ -125,7 +127,8 @@ def motion(
     Raises
     ------
     InputError
-        When the scene has no motion, or ``dissipation`` is not between 0 and 1.
+        When the scene has no motion, ``dissipation`` is not between 0 and 1, or the watched node does not move in the
+        watched direction.
     NotConverged
         When the dead loads, or a time step, find no equilibrium.
     """
@@ -148,6 +151,8 @@ def motion(
         path = fine.moved[node] @ direction
         at = int(np.argmax(np.abs(path)))
         scale = float(np.abs(path[at]))
+        if scale <= _NOTHING * max(float(np.abs(moved).max()) for moved in fine.moved.values()):
+            raise InputError("motion.direction", f'node "{node}" does not move that way', "watch another way or node")
         error = sum(_gap(path, other.moved[node] @ direction) for other in others) / scale
         if error <= tolerance:
             break

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from frames import IPE300, frame_scene
 
+from capacity import InputError
 from fem_reference.dynamics import _follow, motion
 from fem_reference.modes import natural_modes
 from scene import Scene
@@ -183,3 +184,10 @@ def test_gravity_acts_on_what_falls_and_a_bearing_bears_it() -> None:
     borne = motion(changed(scene, nodes=ends, motion=asked), tolerance=0.05)
     weight = 0.001 * 2.0 * 7850.0 * 9.81
     assert borne.residual["A"][1] == pytest.approx(-0.5 * weight / 1e6, rel=1e-3)
+
+
+def test_a_node_that_does_not_move_the_watched_way_is_named() -> None:
+    scene = struck(7.85, 17.16, 1e-4)
+    across = type(scene.motion)(duration=1e-4, watch="B", direction=(1.0, 0.0))
+    with pytest.raises(InputError, match="does not move that way"):
+        motion(changed(scene, motion=across))

@@ -199,6 +199,16 @@ def _fields(scene: Scene) -> dict[str, Any]:
     return {name: getattr(scene, name) for name in scene.__struct_fields__}
 
 
+@pytest.mark.parametrize(("direction", "factor"), [(-1, 768.0 / 7.0), (1, 24.0)])
+def test_a_bearing_pushes_and_lets_go(direction: int, factor: float) -> None:
+    """Stiffness at mid-span of a propped cantilever, 768 EI / 7 L³, and of one that is free beyond, 24 EI / L³."""
+    scene = propped(1e-4)
+    prop = type(scene.nodes["B"])(at=scene.nodes["B"].at, bearing=1e12)
+    push = msgspec.structs.replace(scene.push, direction=(0.0, direction))
+    answer = pushover(msgspec.structs.replace(scene, nodes={**scene.nodes, "B": prop}, pushed=push, loads=()))
+    assert answer.load[-1] / 1e-4 == pytest.approx(factor * EI / 6.0**3, rel=1e-5)
+
+
 def test_a_hinged_end_bears_no_moment() -> None:
     scene = propped(1e-4)
     released = dict(scene.members)

@@ -39,7 +39,8 @@ class MemberLaws:
         model, shear = self._model.of(name), self._shear(name, c) / length
         if pinned:
             if model.law == "rigid-plastic":
-                return RigidPlastic((c.N_max, c.Q_max, 0.0))
+                k = RigidPlastic.of_section(c, length).stiffness
+                return RigidPlastic((c.N_max, c.Q_max, 0.0), (k[0], k[1], 0.0))
             return ElasticPlastic((c.EA / length, shear, 0.0), (c.N_max, c.Q_max, 0.0))
         if elastic:
             return ElasticPlastic((c.EA / length, shear, c.EI / length), (math.inf, math.inf, math.inf))

@@ -63,7 +63,7 @@ class Point:
 
 ELASTIC = [capped(), fibres(), fibres(0.02), interacting()]
 LAYERED = FibreSection.of_section(SECTION, CURVED, LENGTH, 12)
-LAWS = [*ELASTIC, RigidPlastic.of_section(CAPACITY), interacting(FLANGED, 24), LAYERED]
+LAWS = [*ELASTIC, RigidPlastic.of_section(CAPACITY, LENGTH), interacting(FLANGED, 24), LAYERED]
 deformations = st.tuples(st.floats(-5e-4, 5e-4), st.floats(-5e-4, 5e-4), st.floats(-0.05, 0.05)).map(np.array)
 
 

@@ -93,3 +93,15 @@ def test_cycles(name: str) -> None:
     unloading = slice(100 * (3 * len(amplitudes)), None)
     rest = float(np.interp(0.0, -load[unloading], way[unloading]))
     assert rest / dy == pytest.approx(outputs["residual_over_dy_after_unloading_from_plus_a"][-1], abs=0.02)
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES if name.startswith("C2-portal-table-L6")])
+def test_rigid_plastic_portals_fold_at_their_collapse_load(name: str) -> None:
+    """As soon as they move: after 5 mm, and in the limit of small displacements after 0.2 m; within 0.2 %."""
+    scene, (_, loads) = parse_scene(SCENES[name], name), curve(name)
+    model = Model("lobatto", 3, "rigid-plastic")
+    near = sim.push_over(scene, model, np.linspace(0.0, 0.005, 21))
+    far = push_over_small(scene, model, np.linspace(0.0, 0.2, 21))
+    assert near.unconverged == far.unconverged == 0
+    assert near.load_at_distances[-1] == pytest.approx(loads[0], rel=2e-3)
+    assert far.load_at_distances[-1] == pytest.approx(loads[0], rel=2e-3)

@@ -55,7 +55,7 @@ def section_law(
     stiffness = (c.EA / length, shear, c.EI / length)
     match name:
         case "rigid-plastic":
-            return RigidPlastic.of_section(c)
+            return RigidPlastic.of_section(c, length)
         case "elastic-plastic":
             return ElasticPlastic(stiffness, (c.N_max, c.Q_max, c.M_max))
         case "interaction":

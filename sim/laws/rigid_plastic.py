@@ -17,6 +17,8 @@ from sim.laws.elastic_plastic import commit, respond
 
 #: Extension, slip and rotation at which a joint yields [m, m, rad].
 INVISIBLE = (1e-5, 1e-5, 1e-4)
+#: A member that is too weak to be stiff by that is still this much stiffer than it would be elastically.
+STIFFER = 10.0
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,9 @@ class RigidPlastic:
     ----------
     capacity : (float, float, float)
         N_max [N], Q_max [N], M_max [N m]; without limit where infinite, 0 where nothing is borne.
+    stiffness : (float, float, float), optional
+        Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness that stand for none; by default those of a joint
+        that yields at `INVISIBLE`, and where there is no limit those of the greatest.
 
     Raises
     ------
@@ -35,6 +40,7 @@ class RigidPlastic:
     """
 
     capacity: tuple[float, float, float]
+    stiffness: tuple[float, float, float] = (math.nan, math.nan, math.nan)
 
     name = "rigid-plastic"
     yields_by = ("N", "Q", "M")
@@ -44,18 +50,18 @@ class RigidPlastic:
     def __post_init__(self) -> None:
         if not any(0.0 < cap < math.inf for cap in self.capacity) or min(self.capacity) < 0.0:
             raise ValueError(f"capacities {self.capacity}: a rigid–plastic joint needs one that is finite and positive")
+        if any(map(math.isnan, self.stiffness)):
+            most = max(cap for cap in self.capacity if cap < math.inf)
+            stiffness = tuple(min(cap, most) / reach for cap, reach in zip(self.capacity, INVISIBLE, strict=True))
+            object.__setattr__(self, "stiffness", stiffness)
 
     @classmethod
-    def of_section(cls, section: Capacity) -> RigidPlastic:
-        """A joint that bears what a section bears."""
-        return cls((section.N_max, section.Q_max, section.M_max))
-
-    @property
-    def stiffness(self) -> tuple[float, float, float]:
-        """Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness that stand for none."""
-        most = max(cap for cap in self.capacity if cap < math.inf)
-        N, Q, M = (min(cap, most) / reach for cap, reach in zip(self.capacity, INVISIBLE, strict=True))
-        return N, Q, M
+    def of_section(cls, section: Capacity, length: float) -> RigidPlastic:
+        """A joint that stands for ``length`` [m] of a member; at least `STIFFER` times as stiff as the member is."""
+        law = cls((section.N_max, section.Q_max, section.M_max))
+        elastic = (section.EA / length, section.GA_s / length, section.EI / length)
+        N, Q, M = (max(k, STIFFER * e) for k, e in zip(law.stiffness, elastic, strict=True))
+        return cls(law.capacity, (N, Q, M))
 
     def capacities(self) -> tuple[float, float, float]:
         """N_max [N], Q_max [N] and M_max [N m]."""

@@ -56,7 +56,15 @@ def load_scene(name: str) -> Scene:
         raise InputError(name, "there is no such file", "`ductile scenes NAME > my.toml` writes one to edit") from error
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(name, f"it cannot be read ({error})", "give a text file in UTF-8") from error
-    return parse_scene(text, name)
+    return _beside(parse_scene(text, name), Path(name).parent)
+
+
+def _beside(scene: Scene, folder: Path) -> Scene:
+    """``scene`` with the path of its mesh seen from ``folder``, where its file is."""
+    if scene.plane is None or scene.plane.mesh is None:
+        return scene
+    plane = msgspec.structs.replace(scene.plane, mesh=str(folder / scene.plane.mesh))
+    return msgspec.structs.replace(scene, plane=plane)
 
 
 def parse_scene(text: str, source: str) -> Scene:

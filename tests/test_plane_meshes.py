@@ -11,9 +11,10 @@ from plane_bodies import HALVES, STEEL
 from capacity import InputError
 from fem_reference import field_files, plane_push
 from fem_reference.plane.beam_mesh import tensor_mesh
+from fem_reference.plane.bodies import plane_scene
 from fem_reference.plane.mesh import PlaneMesh
 from fem_reference.plane.mesh_file import body_from_mesh
-from scene import Scene, parse_scene
+from scene import Scene, load_scene, parse_scene
 
 #: Nodes of each kind of cell, taken from a quadrilateral of 9.
 KINDS = {"quad": [(0, 1, 2, 3)], "quad8": [tuple(range(8))], "quad9": [tuple(range(9))]}
@@ -185,6 +186,27 @@ def test_faults_are_named(tmp_path: Path) -> None:
     )
     with pytest.raises(InputError, match="folds over itself"):
         body_from_mesh(tmp_path / "folded.vtu", 1.0, STEEL)
+
+
+def test_a_mesh_is_beside_its_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "scenes").mkdir()
+    write(tmp_path / "scenes" / "strip.vtu", "quad")
+    text = """
+        title = "Slotted strip"
+        [plane]
+        mesh = "strip.vtu"
+        unit = "1 mm"
+        thickness = "5 mm"
+        material = "S235"
+        supports = { left = "clamped" }
+        [push]
+        node = "right"
+        direction = [1, 0]
+        distance = "1 mm"
+        """
+    (tmp_path / "scenes" / "strip.toml").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert plane_scene(load_scene("scenes/strip.toml")).body(0).continuum.mesh.cells.shape == (38, 9)
 
 
 @pytest.mark.parametrize(

@@ -44,18 +44,21 @@ class JointWatch:
                 self.joints.append(joint)
         new = len(self.joints) - len(self.peak)
         self.peak, self._state = (np.pad(array, ((0, new), (0, 0))) for array in (self.peak, self._state))
+        # Also of joints that have just gone: one may have been made and broken within this step.
+        before = [self.joints[row] for row in self._present]
         self._present = [self._row[joint] for joint in present]
-        current = dict.fromkeys(joint.structure for joint in present)
+        for structure in {joint.structure for joint in (*before, *present)}:
+            if structure is not None:
+                self._rows.setdefault(structure, np.array([self._row[joint] for joint in structure.joints]))
+        current = {joint.structure for joint in present}
         # A structure that is no more is read a last time, for the step in which it broke; what has passed on to
         # another is then read from that.
         for past in [structure for structure in self._rows if structure not in current]:
             self._read(past)
             del self._rows[past]
             self._spent += _without_what_passes_on(past.energy)
-        for structure in current:
-            if structure is not None:
-                self._rows.setdefault(structure, np.array([self._row[joint] for joint in structure.joints]))
-                self._read(structure)
+        for structure in self._rows:
+            self._read(structure)
 
     def state(self) -> np.ndarray:
         """What each joint bears, (n, 5); no force in one that was taken out of the space."""

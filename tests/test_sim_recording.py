@@ -8,6 +8,7 @@ import pytest
 from replay_runs import DEPTH, LENGTH, PIECES, SECTION, STEEL, cantilever, falling_ball, world
 
 from capacity import capacity
+from sim import DuctileJoint, ElasticPlastic, Limits
 from sim.recording import Recorder, Recording
 
 
@@ -83,6 +84,23 @@ def test_a_broken_joint_stays_broken_and_bears_nothing(recording: Recording) -> 
     assert np.all(recording.force[broken, 0] == 0.0)
     assert np.all(recording.capacity_used[broken, 0] == 1.0)
     assert recording.peak[0, 2] == pytest.approx(recording.joints[0].maxima[2], rel=1e-9)
+
+
+def test_a_joint_that_breaks_in_its_first_step_is_seen_broken() -> None:
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    body.velocity = (1000.0, 0.0)
+    law = ElasticPlastic((1e6, 1e6, 1e6), (10.0, 10.0, 10.0))
+    joint = DuctileJoint(space.static_body, body, (0.0, 0.0), law, direction=0.0, limits=Limits(elongation=1e-3))
+    space.add(body, joint)
+    recorder = Recorder(space)
+    space.step(1 / 60)
+    recorder.sample()
+    assert joint.broken
+    recording = recorder.finish()
+    assert recording.broken[:, 0].tolist() == [False, True]
+    assert recording.peak[0, 0] > 0.0
+    assert recording.energy["plastic"][-1] > 0.0
 
 
 def test_contacts_lie_where_bodies_meet_and_carry_their_weight() -> None:

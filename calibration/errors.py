@@ -48,7 +48,7 @@ def compare(reference: PushAnswer, push: Push) -> Errors:
     """Errors of ``push`` at the points of ``reference``, whose displacements were its distances."""
     load = push.load_at_distances
     largest = float(np.abs(reference.load).max())
-    early = np.arange(len(load)) < np.argmax(np.abs(reference.load) > 0.3 * largest)
+    early = np.arange(len(load)) < max(2, np.argmax(np.abs(reference.load) > 0.3 * largest))
     stiffness = _slope(reference.displacement[early], reference.load[early])
     turns = np.flatnonzero(np.diff(np.sign(np.diff(reference.displacement)))) + 1
     unloaded = len(turns) > 0 and abs(reference.load[-1]) <= 1e-6 * largest
@@ -99,9 +99,7 @@ def find(scene: Scene, reference: PushAnswer, push: Push, frequency: tuple[float
 
 def _first_yield(displacement: np.ndarray, load: np.ndarray) -> float | None:
     """Load at which load / displacement has fallen by `_BENT`; None when it has not, or was never elastic."""
-    early = np.abs(load) <= 0.3 * np.abs(load).max()
-    if not displacement[early].any():
-        return None
+    early = np.arange(len(load)) < max(2, np.argmax(np.abs(load) > 0.3 * np.abs(load).max()))
     level = (1.0 - _BENT) * _slope(displacement[early], load[early])
     secant = np.divide(load, displacement, out=np.full_like(load, np.inf), where=displacement != 0.0)
     for i, (before, here) in enumerate(itertools.pairwise(secant)):

@@ -48,7 +48,7 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
             "load": reference.load.tolist(),
             "error_estimate": reference.error_estimate,
             "elements": reference.elements,
-            "fibres": reference.fibres if isinstance(reference, Pushover) else 0,
+            "fibres": reference.fibres if isinstance(reference, Pushover) else None,
             "seconds": reference.seconds,
         },
         "model": {
@@ -67,6 +67,7 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
             for name, plan in result.plans.items()
         },
         "errors": {**asdict(best.errors), "frequency": result.findings.frequency_error},
+        "fit": None if result.fit is None else {**asdict(result.fit), "model": settings(result.fit.model)},
         "hinges": [
             {"where": pair.where, "load": pair.load, "model_load": pair.model_load} for pair in result.findings.hinges
         ],

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from calibration.trials import Failure, Trial
 from scene import Scene
 from sim import Model
@@ -30,9 +32,19 @@ def what_limits(scene: Scene, best: Trial, trials: Sequence[Trial], failures: Se
         causes.append("neither joints, fibres nor shorter steps make it fall any more")
         if scene.kinematics == "p-delta":
             causes.append('rigid bodies turn by what they turn, P–Δ by little: compare with kinematics = "large"')
+    if _sheared(scene, best):
+        causes.append("a joint bears all of Q_max, but the reference's beams do not yield in shear")
     if failures:
         causes.append(f"{len(failures)} finer or coarser models could not be stepped: {failures[-1].reason}")
     return "; ".join(causes)
+
+
+def _sheared(scene: Scene, best: Trial) -> bool:
+    """Whether a joint comes to its shear capacity."""
+    return any(
+        np.abs(best.push.force[:, i, 1]).max() >= 0.99 * scene.capacity(place.member).Q_max
+        for i, place in enumerate(best.push.places)
+    )
 
 
 def _but_joints(model: Model) -> tuple[object, ...]:

@@ -79,6 +79,15 @@ def _fixed(plans: Mapping[str, MemberPlan]) -> dict[str, MemberModel]:
     return {name: plan.fixed for name, plan in plans.items() if plan.fixed is not None}
 
 
+def candidates_to_fit(scene: Scene) -> list[Model]:
+    """Models in order of `relative_cost` whose parameters are fitted to a continuum.
+
+    In a stocky member yielding spreads further than beam theory says, which few joints mimic that stand for long parts.
+    """
+    models = [Model("lobatto", joints, "fibre", fibres) for joints in (3, 4, 5, 7) for fibres in (8, 12, 16, 24)]
+    return sorted(models, key=lambda model: relative_cost(model, scene.members))
+
+
 def cheaper(model: MemberModel) -> list[MemberModel]:
     """Cheaper models for a member that yields, cheapest first: one rung, three rungs lower, and a hinge at each end.
 

@@ -24,6 +24,11 @@ from sim import Model, Push, push_over
 SHARE = 1e-3
 
 
+def push_model(scene: Scene, model: Model, distances: np.ndarray) -> Push:
+    """Push ``model`` through ``distances`` [m], with what geometry the scene's kinematics asks for."""
+    return (push_over_small if scene.kinematics == "small" else push_over)(scene, model, distances)
+
+
 def push_over_small(scene: Scene, model: Model, distances: np.ndarray) -> Push:
     """`sim.push_over` of ``scene`` in the limit of small displacements."""
     push = push_over(shrunk(scene, SHARE), model, SHARE * distances)

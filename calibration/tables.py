@@ -7,12 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from calibration.export import joint_table
+from calibration.fit import Fit
 from calibration.tuning import Calibration
 from capacity.units import engineering
 from sim import MemberModel, Model
 
 #: Heads of columns whose words may take several lines.
-WRAPPED = ("<why", "<model", "<kind")
+WRAPPED = ("<why", "<model", "<kind", "<remark")
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,8 @@ def verdict(result: Calibration) -> tuple[str, str]:
 def sheets(result: Calibration) -> list[Sheet]:
     """All tables of the report, in its order."""
     tables = [_capacities(result), _members(result), _errors(result)]
+    if result.fit is not None:
+        tables.append(_fit(result.fit))
     if result.findings.hinges:
         tables.append(_hinges(result))
     return [*tables, _joints(result), _trials(result)]
@@ -125,6 +128,24 @@ def _errors(result: Calibration) -> Sheet:
     return Sheet("Errors", note, ("<kind", "error"), tuple(rows))
 
 
+def _fit(found: Fit) -> Sheet:
+    rows: list[tuple[str, ...]] = []
+    for name, value in found.parameters.items():
+        low, high = found.bounds[name]
+        remarks = ["at its bound"] * (name in found.at_bound) + ["not determined by the data"] * (
+            name in found.undetermined
+        )
+        rows.append((name, f"{value:.4g}", f"{low:g} to {high:g}", ", ".join(remarks) or "–"))
+    for case, after in found.after.items():
+        rows.append((f"error: {case}", percent(after), "–", f"{percent(found.before[case])} before the fit"))
+    for case, (before, after) in found.checks.items():
+        rows.append((f"error: {case}", percent(after), "–", f"not seen by the fit; {percent(before)} without it"))
+    note = (
+        "Factors of what the scene says of E and fy; spread s: half of each fibre yields at 1 - s, half at 1 + s of it."
+    )
+    return Sheet("Fit", note, ("<what", "value", "bounds", "<remark"), tuple(rows))
+
+
 def _hinges(result: Calibration) -> Sheet:
     scale = max(abs(float(load)) for load in result.reference.load)
     rows = []
@@ -142,7 +163,7 @@ def _hinges(result: Calibration) -> Sheet:
 
 
 def _joints(result: Calibration) -> Sheet:
-    table = joint_table(result.scene, result.best.model)
+    table = joint_table(result.fitted_scene, result.best.model)
     rows = []
     for i, joint in enumerate(table["joints"], 1):
         stiffness = joint["elastic_stiffness"]

@@ -5,17 +5,32 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from calibration.errors import Errors
+from calibration.fit import Fit
 from sim import Model, Push
 
 
 @dataclass(frozen=True)
 class Trial:
-    """A model that was tried, the curve it gave, how wrong that is, and its `calibration.planner.relative_cost`."""
+    """A model that was tried.
+
+    Attributes
+    ----------
+    model : Model
+    push : Push
+        The curve that it gave.
+    errors : Errors
+        How wrong that is.
+    cost : float
+        Its `calibration.planner.relative_cost`.
+    fit : Fit or None
+        What was fitted to the reference beforehand, where that is a continuum.
+    """
 
     model: Model
     push: Push
     errors: Errors
     cost: float
+    fit: Fit | None = None
 
 
 @dataclass(frozen=True)

@@ -2,28 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
+import msgspec
 
 from calibration.errors import Findings, compare, find
+from calibration.fit import Fit, LoadCase, fit, fitted
 from calibration.limits import what_limits
 from calibration.member_plans import MemberPlan, member_plans
-from calibration.planner import candidates, cheaper, groups, relative_cost
-from calibration.small_displacements import push_over_small
+from calibration.planner import candidates, candidates_to_fit, cheaper, groups, relative_cost
+from calibration.small_displacements import push_model
 from calibration.trials import Failure, Trial
-from capacity import Capacity
-from fem_reference import PushAnswer, natural_modes
-from fem_reference import push_over as follow
+from capacity import Capacity, InputError
+from fem_reference import NotConverged, PlanePush, PushAnswer, default_tolerance, natural_modes, push_over
 from scene import Scene
-from sim import Model, Push, SolverError, assemble, push_over
+from scene.quantities import Length
+from sim import Model, SolverError, assemble
 from sim import natural_modes as modes_of_joints
 
 #: The reference must be this many times better than the target, …
 REFERENCE_MARGIN = 5.0
 #: … and no worse than this, for its curve is quoted for itself.
 REFERENCE_TOLERANCE = 5e-4
+#: Points of a path below which there is nothing to compare.
+_FEWEST_POINTS = 10
 #: Trials spent on giving single members less once a model has met the target.
 _MOST_SAVING_TRIALS = 16
 
@@ -39,7 +42,7 @@ class Calibration:
     scene : Scene
     capacity : dict[str, Capacity]
         By member.
-    reference : Pushover or PlanePush
+    reference : PushAnswer
     plans : dict[str, MemberPlan]
         What each member needs.
     trials : tuple of Trial
@@ -50,6 +53,8 @@ class Calibration:
         The cheapest that met the target, or else the one with the least error.
     findings : Findings
         Of the best.
+    fit : Fit or None
+        Parameters fitted to a continuum, checked on a load case that the fit did not see; None where beam theory holds.
     target_error : float
         Largest `Errors.path_max` wanted [-].
     """
@@ -63,6 +68,7 @@ class Calibration:
     failures: tuple[Failure, ...]
     best: Trial
     findings: Findings
+    fit: Fit | None
     target_error: float
 
     @property
@@ -86,6 +92,11 @@ class Calibration:
                 f"and must be {REFERENCE_MARGIN:.0f} times better than the target"
             )
         return what_limits(self.scene, self.best, self.trials, self.failures)
+
+    @property
+    def fitted_scene(self) -> Scene:
+        """The scene with what was fitted in place: what joints are made from."""
+        return self.scene if self.fit is None else fitted(self.scene, self.best.model, self.fit.parameters)[0]
 
     def why(self, member: str) -> str:
         """Why the best model has what it has in a member, in words."""
@@ -117,17 +128,23 @@ def calibrate(
     ValueError
         When ``target_error`` is not between 0 and 1.
     InputError
-        When the scene has no push.
+        When the scene has no push, or is a mesh.
     fem_reference.NotConverged, sim.SolverError
         When the reference, or every model, finds no equilibrium.
     """
     if not 0.0 < target_error < 1.0:
         raise ValueError(f"a target error of {target_error:g} is not between 0 and 1")
-    tolerance = min(target_error / REFERENCE_MARGIN, REFERENCE_TOLERANCE)
-    reference = follow(scene, tolerance, lambda share: watch("reference", share))
+    if scene.meshed is not None:
+        raise InputError(
+            "plane.mesh", "joints stand for lengths of members, which a mesh has none of", "describe members"
+        )
+    tolerance = min(target_error / REFERENCE_MARGIN, default_tolerance(scene))
+    reference = push_over(scene, tolerance, lambda share: watch("reference", share))
+    if len(reference.load) < _FEWEST_POINTS:
+        raise NotConverged(f"the reference ends before there is anything to compare: {reference.outcome}")
     plans = member_plans(scene, reference, target_error)
     bench = Bench(scene, reference)
-    models = candidates(scene, plans)
+    models = candidates_to_fit(scene) if bench.fits else candidates(scene, plans)
     for i, model in enumerate(models):
         watch(f"model {i + 1}: {model.rule} {model.joints}, {model.law}", i / len(models))
         trial = bench.try_out(model)
@@ -140,6 +157,10 @@ def calibrate(
         raise SolverError(f"none of {len(failures)} models could be stepped; the last said: {failures[-1].reason}")
     met = [trial for trial in trials if trial.errors.path_max <= target_error]
     best = min(met, key=lambda trial: trial.cost) if met else min(trials, key=lambda trial: trial.errors.path_max)
+    frequency = (0.0 if bench.fits else _reference_frequency(scene), _model_frequency(scene, best.model))
+    if bench.fits:
+        watch("reference of a load case that the fit did not see", 0.0)
+        trials[trials.index(best)] = best = replace(best, fit=bench.fit(best.model, checks=[_unseen(scene)]))
     return Calibration(
         name=name or scene.title,
         scene=scene,
@@ -149,7 +170,8 @@ def calibrate(
         trials=tuple(sorted(trials, key=lambda trial: trial.cost)),
         failures=tuple(failures),
         best=best,
-        findings=find(scene, reference, best.push, (_reference_frequency(scene), _model_frequency(scene, best.model))),
+        findings=find(scene, reference, best.push, frequency),
+        fit=best.fit,
         target_error=target_error,
     )
 
@@ -171,6 +193,15 @@ class Bench:
         # The first model in a process also pays for loading the kernels; that is no part of its cost.
         push_model(scene, Model("lobatto", 2, "elastic-plastic"), reference.displacement[:2])
 
+    @property
+    def fits(self) -> bool:
+        """Whether a model's parameters are fitted: to a continuum, which beam theory does not describe."""
+        return isinstance(self.reference, PlanePush)
+
+    def fit(self, model: Model, checks: Sequence[LoadCase] = ()) -> Fit:
+        """Parameters of ``model`` fitted to the reference."""
+        return fit([LoadCase.of_push("push", self.scene, self.reference)], model, checks=checks)
+
     def try_out(self, model: Model) -> Trial | None:
         """Push ``model`` as the reference was pushed; None when it breaks down. What was tried is not tried again."""
         key = (model.dt, model.iterations, *(model.of(name) for name in self.scene.members))
@@ -180,18 +211,15 @@ class Bench:
 
     def _push(self, model: Model) -> Trial | None:
         try:
-            push = push_model(self.scene, model, self.reference.displacement)
+            found = self.fit(model) if self.fits else None
+            scene = self.scene if found is None else fitted(self.scene, model, found.parameters)[0]
+            push = push_model(scene, model, self.reference.displacement)
         except SolverError as error:
             self.failures.append(Failure(model, str(error)))
             return None
-        trial = Trial(model, push, compare(self.reference, push), relative_cost(model, self.scene.members))
+        trial = Trial(model, push, compare(self.reference, push), relative_cost(model, self.scene.members), found)
         self.trials.append(trial)
         return trial
-
-
-def push_model(scene: Scene, model: Model, distances: np.ndarray) -> Push:
-    """Push ``model`` through ``distances`` [m], with what geometry the scene's kinematics asks for."""
-    return (push_over_small if scene.kinematics == "small" else push_over)(scene, model, distances)
 
 
 def _save(
@@ -214,6 +242,15 @@ def _save(
             if less is not None and less.errors.path_max <= target_error:
                 trial = less
                 break
+
+
+def _unseen(scene: Scene) -> LoadCase:
+    """The scene pushed half as far, and back as far the other way."""
+    half = 0.5 * max(map(abs, scene.push.stops()))
+    push = msgspec.structs.replace(
+        scene.push, distance=Length(0.0), turning_points=(Length(half), Length(-half)), unload=False
+    )
+    return LoadCase.solve("half as far and back", msgspec.structs.replace(scene, pushed=push))
 
 
 def _reference_frequency(scene: Scene) -> float:

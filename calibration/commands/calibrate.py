@@ -57,7 +57,7 @@ def calibrate(
                 "report.html": report_page(result),
                 "report.md": report_markdown(result),
                 "calibration.json": json.dumps(whole, indent=1),
-                "joints.json": json.dumps(joint_table(loaded, result.best.model, scene), indent=1),
+                "joints.json": json.dumps(joint_table(result.fitted_scene, result.best.model, scene), indent=1),
                 "reference.csv": curve_csv(result.reference.displacement, result.reference.load),
                 "model.csv": curve_csv(result.best.push.displacement, result.best.push.load),
             }

@@ -48,7 +48,7 @@ def compare(reference: PushAnswer, push: Push) -> Errors:
     """Errors of ``push`` at the points of ``reference``, whose displacements were its distances."""
     load = push.load_at_distances
     largest = float(np.abs(reference.load).max())
-    early = np.arange(len(load)) < max(2, np.argmax(np.abs(reference.load) > 0.3 * largest))
+    early = _early(reference.load)
     stiffness = _slope(reference.displacement[early], reference.load[early])
     turns = np.flatnonzero(np.diff(np.sign(np.diff(reference.displacement)))) + 1
     unloaded = len(turns) > 0 and abs(reference.load[-1]) <= 1e-6 * largest
@@ -99,7 +99,9 @@ def find(scene: Scene, reference: PushAnswer, push: Push, frequency: tuple[float
 
 def _first_yield(displacement: np.ndarray, load: np.ndarray) -> float | None:
     """Load at which load / displacement has fallen by `_BENT`; None when it has not, or was never elastic."""
-    early = np.arange(len(load)) < max(2, np.argmax(np.abs(load) > 0.3 * np.abs(load).max()))
+    early = _early(load)
+    if not displacement[early].any():
+        return None
     level = (1.0 - _BENT) * _slope(displacement[early], load[early])
     secant = np.divide(load, displacement, out=np.full_like(load, np.inf), where=displacement != 0.0)
     for i, (before, here) in enumerate(itertools.pairwise(secant)):
@@ -107,6 +109,11 @@ def _first_yield(displacement: np.ndarray, load: np.ndarray) -> float | None:
             share = (before - level) / (before - here)
             return float(load[i] + share * (load[i + 1] - load[i]))
     return None
+
+
+def _early(load: np.ndarray) -> slice:
+    """The points before the load first passes 30 % of its largest, two at least."""
+    return slice(0, max(2, int(np.argmax(np.abs(load) > 0.3 * np.abs(load).max()))))
 
 
 def _slope(x: np.ndarray, y: np.ndarray) -> float:

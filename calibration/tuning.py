@@ -142,6 +142,9 @@ def calibrate(
     reference = push_over(scene, tolerance, lambda share: watch("reference", share))
     if len(reference.load) < _FEWEST_POINTS:
         raise NotConverged(f"the reference ends before there is anything to compare: {reference.outcome}")
+    if not reference.load.any():
+        fault = f'the loads do not move node "{scene.push.node}" that way'
+        raise InputError("push.direction", fault, "push it in the direction in which they do")
     plans = member_plans(scene, reference, target_error)
     bench = Bench(scene, reference)
     models = candidates_to_fit(scene) if bench.fits else candidates(scene, plans)

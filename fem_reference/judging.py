@@ -42,7 +42,8 @@ def energy_error(fine: Trace, coarse: Trace) -> float:
     both = min(len(fine.load), len(coarse.load))
     pairs = ((fine.external, coarse.external), (fine.elastic, coarse.elastic), (fine.plastic, coarse.plastic))
     worst = max(float(np.abs(np.array(a[:both]) - np.array(b[:both])).max()) for a, b in pairs)
-    return worst / max(map(abs, fine.external))
+    most = max(map(abs, fine.external))
+    return worst / most if most else 0.0
 
 
 def with_errors(fine: tuple[HingeEvent, ...], coarse: tuple[HingeEvent, ...], scale: float) -> tuple[HingeEvent, ...]:

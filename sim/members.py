@@ -22,7 +22,7 @@ from sim.shapes import keep_neighbours_apart
 from sim.structure import Structure
 
 #: A spring that counts as rigid is this much stiffer than the members it is tied to.
-RIGID = 1e2
+RIGID = 1e4
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ from calibration.engines.pushing import CurveErrors, Unstable, curve_errors
 from calibration.engines.text import comment
 from calibration.engines.to_pymunk import module_text, push_module
 from calibration.errors import compare
-from calibration.tuning import REFERENCE_TOLERANCE, push_model
+from calibration.small_displacements import push_model
+from calibration.tuning import REFERENCE_TOLERANCE
 from fem_reference import PushAnswer, push_over
 from scene import Scene
 from sim import Model

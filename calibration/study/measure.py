@@ -10,9 +10,9 @@ from calibration.engines.handover import hand_over
 from calibration.engines.pushing import Unstable, curve_errors
 from calibration.engines.to_pymunk import Turn, module_text, push_module
 from calibration.errors import compare
+from calibration.small_displacements import push_model
 from calibration.study.hard_cases import let_down
 from calibration.study.points import HardPoint, ModelPoint, Point
-from calibration.tuning import push_model
 from capacity import InputError
 from fem_reference import PushAnswer
 from scene import Scene

@@ -1,5 +1,7 @@
 """Frames as rigid bodies: N–M interaction, supports and springs, and a frame of two storeys that hardens."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 from conftest import CASES
@@ -68,13 +70,54 @@ def two_storeys(hardening: float, kinematics: str) -> Scene:
     )
 
 
-@pytest.mark.parametrize("hardening", [0.0, 0.02])
-def test_a_frame_of_two_storeys_follows_the_finite_elements(hardening: float) -> None:
+def test_a_frame_of_two_storeys_follows_the_finite_elements() -> None:
     """Fibre beam elements that turn with their chords, within their own estimate and 1 % of the peak."""
-    scene = two_storeys(hardening, "large")
+    scene = two_storeys(0.02, "large")
     reference = pushover(scene, 3e-3)
     push = sim.push_over(scene, FINE, reference.displacement)
     assert push.unconverged == 0
     error = np.abs(push.load_at_distances - reference.load).max() / reference.load.max()
     assert error <= 0.01 + reference.error_estimate
     assert reference.error_estimate <= 3e-3
+
+
+def portal(push: str, hardening: float, loads: Sequence[str] = ()) -> Scene:
+    """4 m high, 6 m wide; sideways at the knee B, and half of it upwards or downwards at the beam's middle C."""
+    nodes = {
+        "A": (0.0, 0.0, "clamped"),
+        "B": (0.0, 4.0, "free"),
+        "C": (3.0, 4.0, "free"),
+        "D": (6.0, 4.0, "free"),
+        "E": (6.0, 0.0, "clamped"),
+    }
+    return frame_scene(
+        nodes,
+        [("A", "B"), ("B", "C"), ("C", "D"), ("E", "D")],
+        f'[push]\nnode = "B"\ndirection = [1, 0]\n{push}',
+        ['node = "B"\nforce = [1.0, 0.0]', 'node = "C"\nforce = [0.0, -0.5]', *loads],
+        material=f"fy=235 MPa, E=210 GPa, rho=7850 kg/m^3, Et={210.0 * hardening!r} GPa",
+        kinematics="large",
+    )
+
+
+def test_cycles_of_a_load_pattern_on_a_portal_that_hardens() -> None:
+    """There, back, further, and unloaded: within 1 % of the largest load and the reference's own estimate."""
+    weight = 'node = "C"\nforce = [0.0, -20000.0]\nkind = "dead"'
+    scene = portal("turning_points = [0.1, -0.1, 0.12]\nunload = true", 0.01, [weight])
+    reference = pushover(scene, 3e-3)
+    push = sim.push_over(scene, Model("lobatto", 9, "fibre", 32), reference.displacement)
+    assert push.unconverged == 0
+    error = np.abs(push.load_at_distances - reference.load).max() / np.abs(reference.load).max()
+    assert error <= 0.01 + reference.error_estimate
+
+
+@pytest.mark.parametrize("law", sim.LAWS)
+def test_neither_step_nor_iterations_matter_to_a_slow_push(law: str) -> None:
+    """The same path within 0.3 % from 1/30 to 1/1000 s and for 2 or 30 iterations."""
+    scene, way = portal("distance = 0.1", 0.0), np.linspace(0.0, 0.1, 51)
+    loads = []
+    for dt, iterations in ((1 / 1000, 2), (1 / 60, 2), (1 / 60, 30), (1 / 30, 2)):
+        push = sim.push_over(scene, Model("lobatto", 5, law, dt=dt, iterations=iterations), way)
+        assert push.unconverged == 0
+        loads.append(push.load_at_distances[2:])
+    assert max(np.abs(load - loads[0]).max() for load in loads) <= 3e-3 * loads[0].max()

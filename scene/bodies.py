@@ -22,8 +22,8 @@ from scene.quantities import (
     si,
 )
 
-#: A number that is not negative.
-Coefficient = Annotated[float, msgspec.Meta(ge=0.0)]
+#: A coefficient of friction or restitution, or a damping ratio.
+Coefficient = Annotated[float, msgspec.Meta(ge=0.0, le=1e3)]
 Point = tuple[Length, Length]
 
 #: What a joint may name in place of a body.

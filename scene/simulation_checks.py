@@ -29,7 +29,7 @@ def check_simulation(scene: Scene) -> None:
     _check_names(scene)
     if scene.simulation is not None:
         _check_programme(scene, scene.simulation)
-    elif scene.bodies or scene.joints or scene.vehicles or scene.grounds or scene.measures:
+    elif scene.bodies or scene.joints or scene.vehicles or scene.grounds:
         raise InputError("simulation", "bodies move in a simulation only", 'add [simulation] with duration = "5 s"')
     for name, body in scene.bodies.items():
         _check_body(body, f"bodies.{name}")

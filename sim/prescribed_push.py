@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 
+from capacity import InputError
 from scene import Scene
 from sim.body_loads import BodyLoad
 from sim.load_driver import LoadDriver
@@ -26,10 +27,19 @@ class PrescribedPush:
         How far the node has come [m], and the force along the push [N] or load factor [-].
     finished : bool
         Whether the last stop is reached, the load gone again after it, or a joint broken.
+
+    Raises
+    ------
+    InputError
+        When the push says a load only.
+    SolverError
+        When the scene does not come to rest under its own weight.
     """
 
     def __init__(self, scene: Scene, assembly: Assembly) -> None:
         push = scene.push
+        if push.way() == 0.0:
+            raise InputError("push.control", "a simulation drives the displacement", 'write distance = "75 mm"')
         settle(scene, assembly, 1e-9 * push.way())
         node = assembly.nodes[push.node]
         loads = assembly.pattern or (BodyLoad(node.body, scene.push_direction(), 0.0, node.point),)

@@ -75,6 +75,8 @@ class World:
         iterations: int | None = None,
         duration: float | None = None,
     ) -> None:
+        if scene.meshed is not None:
+            raise InputError("plane.mesh", "a mesh has no joints; it is for the reference", "write nodes and members")
         self.scene = scene
         run = scene.simulation or Simulation()
         self.dt = float(run.dt) if dt is None else dt
@@ -120,9 +122,9 @@ class World:
             return None
         limits = {name: _limits(member) for name, member in scene.members.items()}
         assembly = assemble(scene, model, self.space, limits=limits)
-        for piece in assembly.pieces:
-            for shape in piece.body.shapes:
-                shape.friction = scene.members[piece.member].friction
+        for span in assembly.spans:
+            for shape in span.body.shapes:
+                shape.friction = scene.members[span.member].friction
         for name in scene.members:
             self.joints[name] = tuple(
                 joint for place, joint in zip(assembly.places, assembly.joints, strict=False) if place.member == name
@@ -151,6 +153,10 @@ class World:
         length = own if wanted is None else wanted
         if length is None:
             raise InputError("simulation", "there is none in the scene", 'add [simulation] with duration = "5 s"')
+        if not self.dt <= length:
+            raise InputError(
+                "dt", f"a step of {self.dt:g} s is longer than the whole run of {length:g} s", "shorten it"
+            )
         return float(length)
 
     def _labelled(self) -> list[tuple[str, DuctileJoint]]:

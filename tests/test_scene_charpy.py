@@ -32,8 +32,8 @@ def test_the_hammer_loses_the_plastic_work_at_any_step() -> None:
         assert found["broken"] == 0.0
         # A hundredth of the specimen's thickness.
         assert found["deepest overlap of the hammer"] < 0.1e-3
-        # Beside the plastic work, what the specimen flies off with, friction and impacts: the ledger has it all.
-        assert lost[-1] == pytest.approx(work[-1], rel=0.03)
+        # Beside the plastic work, what the specimen flies off with and what the blow takes: the ledger has it all.
+        assert lost[-1] == pytest.approx(work[-1], rel=0.02)
         assert lost[-1] == pytest.approx(energy(world.space).external, rel=0.01)
         assert work[-1] == pytest.approx(121.6, rel=0.02)
     assert max(lost) / min(lost) < 1.05

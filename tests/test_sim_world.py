@@ -3,9 +3,14 @@
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
+from capacity import InputError
 from scene import builtin_text, load_scene, parse_scene
+from sim.joint import AVERAGE_ACCELERATION
+from sim.model import Model
+from sim.motion import follow
 from sim.world import World
 
 
@@ -185,3 +190,79 @@ of = "column"
     assert found["half"] == pytest.approx(-20e3, rel=0.01)
     assert found["full"] == pytest.approx(-40e3, rel=0.01)
     assert abs(found["after"]) < 100.0
+
+
+COLUMN = """
+title = "Cantilever pushed to and fro"
+gravity = "0 m/s^2"
+[nodes.wall]
+at = ["0 m", "0 m"]
+support = "clamped"
+[nodes.tip]
+at = ["2 m", "0 m"]
+[members.beam]
+from = "wall"
+to = "tip"
+section = "IPE 300"
+material = "S235"
+[measures.work]
+quantity = "plastic-work"
+of = "beam"
+[push]
+node = "tip"
+direction = [0, 1]
+"""
+
+
+def test_a_cyclic_push_goes_to_every_turning_point_and_its_work_is_the_loop_s_area() -> None:
+    text = COLUMN + 'turning_points = ["30 mm", "-30 mm", "30 mm"]'
+    world = World(parse_scene(text, "test"))
+    assert world.push is not None
+    way, load = [0.0], [0.0]
+    while not world.finished:
+        world.step()
+        way.append(world.push.displacement)
+        load.append(world.push.load)
+    assert max(way) == pytest.approx(0.030, rel=1e-3)
+    assert min(way) == pytest.approx(-0.030, rel=1e-3)
+    assert way[-1] == pytest.approx(0.030, rel=1e-3)
+    area = float(np.trapezoid(load, way))
+    stored = load[-1] ** 2 / 2.0 * 0.030 / load[-1]
+    assert world.results()["work"] == pytest.approx(area, rel=0.05, abs=stored)
+
+
+def test_a_push_that_unloads_ends_without_load() -> None:
+    world, _ = run(COLUMN + 'distance = "40 mm"\nunload = true\n')
+    assert world.push is not None
+    assert abs(world.push.load) < 0.03 * 75e3
+    assert 0.01 < world.push.displacement < 0.035
+
+
+def test_a_motion_is_run_as_its_own_solver_runs_it() -> None:
+    text = (
+        COLUMN[: COLUMN.index("[measures")]
+        + """
+[motion]
+duration = "0.1 s"
+[simulation]
+dt = "1 ms"
+numerical_damping = 0.0
+[measures.peak]
+quantity = "displacement"
+of = "tip"
+take = "largest"
+"""
+    )
+    text = text.replace('at = ["2 m", "0 m"]', 'at = ["2 m", "0 m"]\nmass = "100 kg"\nvelocity = ["0 m/s", "-2 m/s"]')
+    _, found = run(text)
+    model = Model("lobatto", 5, "elastic-plastic", dt=1e-3, scheme=AVERAGE_ACCELERATION)
+    assert found["peak"] == pytest.approx(-follow(parse_scene(text, "test"), model).peak, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "fault"),
+    [({"dt": 5.0}, "longer than the whole run"), ({"duration": 1e-3}, "longer than the whole run")],
+)
+def test_a_step_longer_than_the_run_is_refused(arguments: dict[str, float], fault: str) -> None:
+    with pytest.raises(InputError, match=fault):
+        World(load_scene("block-under-tension"), **arguments)

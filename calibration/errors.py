@@ -98,10 +98,8 @@ def find(scene: Scene, reference: PushAnswer, push: Push, frequency: tuple[float
 
 
 def _first_yield(displacement: np.ndarray, load: np.ndarray) -> float | None:
-    """Load at which load / displacement has fallen by `_BENT`; None when it has not, or was never elastic."""
+    """Load at which load / displacement has fallen by `_BENT`; None when it has not."""
     early = _early(load)
-    if not displacement[early].any():
-        return None
     level = (1.0 - _BENT) * _slope(displacement[early], load[early])
     secant = np.divide(load, displacement, out=np.full_like(load, np.inf), where=displacement != 0.0)
     for i, (before, here) in enumerate(itertools.pairwise(secant)):

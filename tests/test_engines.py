@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pymunk
 import pytest
 from frames import propped, two_spans
@@ -14,6 +15,7 @@ from calibration.cli import main
 from calibration.engines.catalogue import ENGINES
 from calibration.engines.export import Export, export
 from calibration.engines.handover import LAW, JointTerms, hand_over
+from calibration.engines.in_bullet import NoTree, push_in_bullet
 from calibration.engines.pushing import curve_errors
 from calibration.engines.to_pymunk import push_module
 from fem_reference import pushover
@@ -132,9 +134,10 @@ def test_bullet_runs_trees_and_says_what_it_cannot() -> None:
     found = handed(CANTILEVER, "bullet", 1 / 60, joints=2)
     assert found.measured is not None
     assert said_in(found.notes) == pytest.approx(100.0 * found.measured.path_max, rel=0.01)
-    loop = handed(propped(0.03), "bullet", 1 / 60)
-    assert loop.measured is None
-    assert any("cannot hold loops" in note for note in loop.notes)
+    loop = hand_over(propped(0.03), Model("lobatto", 2, LAW), "loop")
+    assert loop.push is not None
+    with pytest.raises(NoTree, match="trees only"):
+        push_in_bullet(loop, loop.push, np.array([0.0, 0.01]))
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -188,9 +191,9 @@ def test_terms_and_units() -> None:
 
 
 def test_json_holds_everything(tmp_path: Path) -> None:
-    assert ductile("export", "fixed-beam", "--engine", "json", "-o", str(tmp_path)) == 0
-    whole = json.loads((tmp_path / "fixed_beam_json.json").read_text(encoding="utf-8"))
-    scene = load_scene("fixed-beam")
+    assert ductile("export", "cantilever", "--engine", "json", "-o", str(tmp_path)) == 0
+    whole = json.loads((tmp_path / "cantilever_json.json").read_text(encoding="utf-8"))
+    scene = load_scene("cantilever")
     members = scene.members.items()
     mass = sum(m.material.density * m.section.area * scene.axis(name)[2] for name, m in members)
     assert sum(body["mass"] for body in whole["bodies"]) == pytest.approx(mass)

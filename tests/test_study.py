@@ -74,7 +74,7 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """A study in a process group of its own that gets Ctrl-C after its first results; its folder, and what it said."""
     folder = tmp_path_factory.mktemp("study")
     process = subprocess.Popen(
-        [sys.executable, "-m", "calibration.cli", "study", "cantilever", "--joints", "3,4,5,6,7,8,9,10", "--dt",
+        [sys.executable, "-m", "calibration.cli", "study", "cantilever", "--joints", "3,4,5,6,7", "--dt",
          "1/60 s, 1/240 s", "--laws", "elastic-plastic, fibre", "--no-hard-cases", "--executor",
          "local:1", "-o", str(folder)],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
@@ -142,7 +142,7 @@ def test_a_dask_cluster_that_loses_a_worker_loses_no_point(tmp_path: Path) -> No
     points = model_points(Choices(rules=("lobatto",), joints=(2, 3, 4, 5), laws=("fibre",), dt=(1 / 60,), stock=()))
     keys, journal = point_keys(scene, points), Journal(tmp_path)
     with distributed.LocalCluster(
-        n_workers=3, threads_per_worker=1, dashboard_address=None, silence_logs=50, protocol="tcp://"
+        n_workers=3, threads_per_worker=1, dashboard_address=":0", silence_logs=50, protocol="tcp://"
     ) as cluster:
         victims = [worker.pid for worker in cluster.workers.values()]
 
@@ -210,11 +210,3 @@ def test_frontier_of_models_that_fail_is_empty() -> None:
     study = outcome("s", "t", reference, [point], [{"failure": "refused"}])
     assert study.frontier == []
     assert study.failures == ((point, "refused"),)
-
-
-def test_a_model_that_is_rigid_until_it_yields_has_errors_too() -> None:
-    """Its load is there from the first point on: no stiffness, no first yield, but a path error near one."""
-    scene = load_scene("portal-frame")
-    reference = pushover(scene, 0.01)
-    found = measure(scene, reference, ModelPoint("ductile", Model("lobatto", 3, "rigid-plastic")))
-    assert found["path_max"] == pytest.approx(1.0, abs=0.1)

@@ -9,6 +9,7 @@ from cyclopts import Parameter
 from rich.console import Console
 
 from calibration.commands.options import Folder, Json
+from capacity.errors import InputError
 
 Wanted = Annotated[str | None, Parameter()]
 
@@ -56,6 +57,7 @@ def study(
     as_json
         Print one JSON object, in SI units, in place of the tables.
     """
+    from concurrent.futures import CancelledError
     from functools import partial
 
     from calibration.output import OutputFolder
@@ -103,6 +105,8 @@ def study(
             kept = len(keys.keys() & Journal(folder.path).results.keys())
             messages.print(f"Stopped: {kept} of {len(points)} points are in {journal.path}; run it again to go on")
             raise
+        except CancelledError as error:  # as Dask's futures end when its scheduler is gone
+            raise InputError("--executor", "the cluster went away", "start it again, and then the study") from error
         watch("drawing", 1.0)
         found = outcome(scene, loaded.title, reference, points, [journal.results[key] for key in keys])
         folder.write(

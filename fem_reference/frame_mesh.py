@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from capacity import InputError
 from capacity.fibres import Fibres
 from capacity.stress_strain import StressStrain
 from fem_reference.frame import NATURAL, Frame
@@ -20,6 +21,11 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
     """Mesh every member of ``scene`` with ``elements`` elements and ``fibres`` fibres a section.
 
     Elements shrink towards a member's ends with the distance, for that is where hinges form.
+
+    Raises
+    ------
+    InputError
+        When a stress–strain curve grows steeper somewhere.
     """
     ends = {name: np.arange(3) + 3 * i for i, name in enumerate(scene.nodes)}
     meshes = {name: mesh_member(scene.axis(name)[2], elements) for name in scene.members}
@@ -67,6 +73,10 @@ def _sections(scene: Scene, elements: int, fibres: int) -> FibreSections:
     if scene.yielding == "ideal-hinges":
         pairs = [_ideal_hinge(scene, name) for name in scene.members]
     else:
+        for name, member in scene.members.items():
+            if not member.material.stress_strain.unloads:
+                fault = "its stress–strain curve grows steeper somewhere, which says nothing about unloading"
+                raise InputError(f"members.{name}.material", fault, "use a curve whose slope only falls")
         pairs = [(m.section.fibres(fibres), m.material.stress_strain) for m in scene.members.values()]
     cut, laws = [fibre for fibre, _ in pairs], [law for _, law in pairs]
     layers = max(len(law.breaks) for law in laws)

@@ -3,10 +3,12 @@
 from collections.abc import Callable
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from cantilevers import SECTIONS, cantilever, reference_cantilever
 
+from capacity import InputError, moment_curvature, parse_material
 from fem_reference import NotConverged, pushover
 from fem_reference.frame_mesh import build_frame
 from fem_reference.programme import trace
@@ -87,3 +89,27 @@ def test_a_structure_that_cannot_carry_its_weight_is_reported() -> None:
     scene = cantilever("rectangle 50x100 mm", 1.0, 0.1, gravity=9810.0)
     with pytest.raises(NotConverged, match="own weight"):
         pushover(scene)
+
+
+def test_a_table_that_grows_steeper_is_refused() -> None:
+    scene = cantilever("rectangle 50x100 mm", 1.0, 0.1)
+    steel = parse_material("curve=0.001:200 0.01:210 0.02:300 MPa")
+    member = msgspec.structs.replace(scene.members["beam"], material=steel)
+    with pytest.raises(InputError, match=r"members\.beam\.material: its stress–strain curve grows steeper"):
+        pushover(msgspec.structs.replace(scene, members={"beam": member}))
+
+
+def test_a_cantilever_of_a_table_follows_the_integrated_curvature() -> None:
+    """Deflection at a tip load by ∫ κ(P x) x dx with the exact moment–curvature of `capacity`."""
+    steel = parse_material("curve=0.0011:231 0.004:260 0.02:320 0.15:400 MPa")
+    scene = cantilever("rectangle 50x100 mm", 1.0, 0.1)
+    member = msgspec.structs.replace(scene.members["beam"], material=steel)
+    answer = pushover(msgspec.structs.replace(scene, members={"beam": member}))
+    curvature = np.append(np.linspace(0.0, 0.1, 300), np.linspace(0.1, 2.0, 1500)[1:])
+    moment = moment_curvature(member.section, steel, curvature).moment
+    arm = np.linspace(0.0, 1.0, 2001)
+    for share in (0.3, 0.6, 0.9, 1.0):
+        load = share * answer.load[-1]
+        deflection = np.trapezoid(np.interp(load * arm, moment, curvature) * arm, arm)
+        found = float(np.interp(deflection, answer.displacement, answer.load))
+        assert found == pytest.approx(load, rel=1e-3)

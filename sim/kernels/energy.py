@@ -20,7 +20,8 @@ A contact's impulse j does the work j v_w on each of two bodies; what one gives 
 j times the velocity of one relative to the other. In an impact that velocity changes by Δv, and ½ j Δv of the energy is
 lost besides: by the structure, where it is part of ½ ΔV·M ΔV, or by the other body. It is booked as lost to contact,
 the structure's part of it up to all of ½ ΔV·M ΔV: where joints bear on the body within the step, j is larger than what
-changed the body's velocity.
+changed the body's velocity. A loose body that is slowed over several steps loses ½ m Δv² more in each of them than
+the structure is given: that is the time integration's loss on its side, and in no structure's ledger.
 
 The elastic energy that a movement without velocity (by hand, or taking out overlap) puts into the joints is external
 work and contact work.

@@ -29,7 +29,7 @@ from sim.kernels.layout import INERTIA_I, INERTIA_M, INVERSE_I, INVERSE_M, RESPO
 from sim.kernels.spread import advance_spread, along, spread_residual, spread_step
 from sim.memory import call_law
 
-MOST_NEWTON_STEPS = 100
+MOST_NEWTON_STEPS = 200
 #: After so many steps, start again from the elastic prediction.
 _PATIENCE = 15
 #: How `respond` takes a joint: by its law, or by a line with its stiffness or its last tangent.

@@ -30,9 +30,10 @@ from sim.kernels.commit import commit, weaken
 from sim.kernels.complement import NOT_FINITE, gather_contacts, sum_up, touch
 from sim.kernels.contacts import collect
 from sim.kernels.energy import close
+from sim.kernels.guard import take_out_what_was_created
 from sim.kernels.inertia import give_back, mass_of, moment_of, weigh
 from sim.kernels.kinematics import leave_out, prepare
-from sim.kernels.layout import CACHED, INERTIA_I, WHERE
+from sim.kernels.layout import CACHED, INERTIA_I, LEDGER_EXTERNAL, WHERE
 from sim.kernels.newton import iterate, restart
 from sim.memory import call_notice, floats
 
@@ -300,8 +301,10 @@ def finish(c):  # type: ignore[no-untyped-def]
     shift = views.shift(t)
     if t[at.FAULT] < 0:
         take_in(t)
+        given = views.ledger(t)[LEDGER_EXTERNAL]
         t[at.BROKE] = commit(t)
         close(c, t)
+        take_out_what_was_created(t, given)
         load_velocities(t, views.per_body(t, at.LAST_VELOCITY))
         body_at, position = views.body_at(t), views.per_body(t, at.LAST_POSITION)
         for i in range(t[at.BODIES]):

@@ -1,0 +1,234 @@
+"""The ledger: every entry against what it is to be, and the sum of all to rounding."""
+
+import math
+
+import numpy as np
+import pymunk
+import pytest
+from cantilevers import cantilever
+from hard_cases import PIECE, Case, chain, largest, law, rests
+
+import sim
+from sim import AVERAGE_ACCELERATION, DuctileJoint, ElasticPlastic, Energy, Limits, Structure, energy
+
+
+def spring(
+    stiffness: float, cap: float, mass: float = 2.0, damping: float = 0.0, scheme: tuple[float, float] = (0.0, 1.0)
+) -> tuple[pymunk.Space, pymunk.Body, DuctileJoint]:
+    """A mass on a joint along x."""
+    space, body = pymunk.Space(), pymunk.Body(mass, 1.0)
+    law = ElasticPlastic((stiffness, 1e6, 1e6), (cap, 1e9, 1e9))
+    joint = DuctileJoint(
+        space.static_body, body, (0.0, 0.0), law, direction=0.0, damping=(damping, 0.0, 0.0), scheme=scheme
+    )
+    space.add(body, joint)
+    return space, body, joint
+
+
+def kinetic(bodies: list[pymunk.Body]) -> float:
+    # pymunk's kinetic energy is m v² + I ω², without the half.
+    return sum(0.5 * body.kinetic_energy for body in bodies)
+
+
+def check(case: Case) -> Energy:
+    """Ledger of a case after its steps, closed and without energy from nowhere in each of them.
+
+    A structure that swings up is ahead of its weight's work by half a step.
+    """
+    given = 0.0
+    for step in range(case.steps):
+        case.act(step)
+        case.space.step(case.dt)
+        now = case.structure.energy
+        assert abs(now.gap) <= 1e-12 * largest(now)
+        assert now.numerical >= -0.5 * abs(now.external - given) - 1e-12 * largest(now)
+        given = now.external
+        assert now.kinetic == pytest.approx(kinetic(case.bodies[: len(case.structure.bodies)]), rel=1e-12, abs=1e-20)
+        assert now.elastic == pytest.approx(case.structure.elastic_energy.sum(), rel=1e-12, abs=1e-20)
+        assert now.plastic == pytest.approx(case.structure.dissipated.sum(), rel=1e-12, abs=1e-20)
+    return case.structure.energy
+
+
+def test_a_load_that_stays_works_along_its_way_and_half_of_it_is_stored() -> None:
+    space, body, joint = spring(1e4, 1e9)
+    for _ in range(2000):
+        body.force = (50.0, 0.0)
+        space.step(1 / 100)
+    found, way = joint.structure.energy, 50.0 / 1e4
+    assert found.external == pytest.approx(50.0 * way, rel=1e-9)
+    assert found.elastic == pytest.approx(0.5 * 50.0 * way, rel=1e-9)
+    assert found.numerical == pytest.approx(0.5 * 50.0 * way, rel=1e-9)
+    assert found.plastic == found.contact == found.viscous == 0.0
+
+
+def test_an_impulse_brings_its_kinetic_energy_and_a_plastic_joint_takes_it() -> None:
+    """300 J into a joint that yields at 1 kN: all but its elastic share becomes plastic work."""
+    space, body, joint = spring(1e7, 1000.0, mass=6.0)
+    body.velocity = (10.0, 0.0)
+    space.step(1e-3)
+    assert joint.structure.energy.external == pytest.approx(300.0, rel=1e-12)
+    for _ in range(500):
+        space.step(1e-3)
+    found = joint.structure.energy
+    assert found.external == pytest.approx(300.0, rel=1e-12)
+    assert found.plastic == pytest.approx(300.0, rel=0.02)
+    assert 0.0 <= found.numerical <= 0.02 * 300.0
+
+
+def test_average_acceleration_dissipates_nothing_of_its_own() -> None:
+    """A free oscillation at 20 steps a period: what damping does not take stays; bounded when the joint yields."""
+    for cap, damping in ((1e9, 0.0), (1e9, 2.0), (20.0, 0.0)):
+        space, body, joint = spring(800.0, cap, damping=damping, scheme=AVERAGE_ACCELERATION)
+        dt = 2.0 * math.pi / 20.0 / 20.0
+        space.step(dt)
+        body.velocity = (1.0, 0.0)
+        for _ in range(400):
+            space.step(dt)
+            found = joint.structure.energy
+            assert abs(found.gap) <= 1e-12
+            assert abs(found.numerical) <= 0.06
+        assert found.external == pytest.approx(1.0, rel=1e-12)
+
+
+def test_a_moved_body_works_on_the_structure() -> None:
+    """A kinematic body that pulls by 5 mm: its work, in steps of 1 mm s⁻¹, is what the joint stores."""
+    space, body, _ = spring(0.0, 0.0)
+    driver = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    pull = DuctileJoint(driver, body, (0.0, 0.0), ElasticPlastic((1e5, 1e5, 1e5), (1e9, 1e9, 1e9)), direction=0.0)
+    hold = DuctileJoint(
+        space.static_body, body, (0.0, 0.0), ElasticPlastic((1e5, 1e5, 1e5), (1e9, 1e9, 1e9)), direction=0.0
+    )
+    space.add(driver, pull, hold)
+    driver.velocity = (0.001, 0.0)
+    for _ in range(5000):
+        space.step(1e-3)
+    driver.velocity = (0.0, 0.0)
+    for _ in range(500):
+        space.step(1e-3)
+    found = pull.structure.energy
+    assert found.elastic == pytest.approx(0.5 * 5e4 * 0.005**2, rel=1e-2)
+    assert found.external == pytest.approx(found.elastic, rel=1e-2)
+
+
+def test_moving_a_body_by_hand_is_external_work() -> None:
+    space, body, joint = spring(1e4, 1e9)
+    space.step(1e-3)
+    body.position = (0.01, 0.0)
+    for _ in range(3):
+        space.step(1e-3)
+        assert abs(joint.structure.energy.gap) <= 1e-14
+    assert joint.structure.energy.external == pytest.approx(1e4 * 0.01**2, rel=0.1)
+    assert joint.structure.energy.numerical >= 0.0
+
+
+@pytest.mark.parametrize("strength", [1.0, 1e-3], ids=["elastic", "folding"])
+def test_pushing_and_falling(strength: float) -> None:
+    case = chain(12, law(strength=strength))
+    case.steps = 100
+    found = check(case)
+    assert (found.plastic > 0.0) == (strength < 1.0)
+
+
+def test_friction_and_impact_are_lost_to_contact() -> None:
+    """A bar slides on the ground until it stops: all it had goes to friction."""
+    case = chain(5, clamped=False, shapes=True)
+    ground = pymunk.Segment(case.space.static_body, (-5.0, -1.05), (50.0, -1.05), 1.0)
+    ground.friction = 0.8
+    case.space.add(ground)
+    case.dt, case.steps = 1 / 240, 200
+    for body in case.bodies:
+        body.velocity = (2.0, 0.0)
+    found = check(case)
+    assert found.kinetic <= 1e-6
+    moved = 0.5 * 5 * 3.12 * 2.0**2
+    assert found.contact == pytest.approx(moved, rel=0.02)
+    assert found.external == pytest.approx(moved, rel=0.02)
+
+
+def test_a_loose_body_that_hits_loses_what_the_structure_gets() -> None:
+    """What a box gives up is the structure's external work, but for its own share of the time integration's loss."""
+    case = rests(200.0, 3.12)
+    box = next(b for b in case.space.bodies if b not in case.bodies)
+    box.position, box.velocity = (0.7, 0.0505 + 0.05), (0.0, -3.0)
+    case.space.gravity, case.dt, case.steps = (0.0, 0.0), 1 / 20000, 2000
+    before = 0.5 * box.kinetic_energy
+    found = check(case)
+    assert found.external == pytest.approx(before - 0.5 * box.kinetic_energy, rel=0.02)
+    assert found.contact > 0.0
+
+
+def test_a_torn_structure_closes_and_its_parts_begin_with_what_they_have() -> None:
+    case = chain(8, law(strength=0.005), clamped=False, gravity=0.0, limits=Limits(rotation=0.02))
+    case.bodies[0].velocity = (0.0, 40.0)
+    first, broke = case.structure, False
+    for _ in range(200):
+        case.space.step(1 / 4000)
+        joints = [joint for joint in first.joints if not joint.broken]
+        for structure in {joint.structure for joint in joints}:
+            assert abs(structure.energy.gap) <= 1e-12 * largest(structure.energy)
+            assert structure.energy.numerical >= -1e-12 * largest(structure.energy)
+        broke |= any(joint.broken for joint in first.joints)
+    assert broke
+    together = energy(case.space)
+    parts = {joint.structure for joint in case.space.constraints}
+    assert together.kinetic == pytest.approx(sum(part.energy.kinetic for part in parts), rel=1e-12)
+
+
+def test_light_links_under_a_heavy_load_swing_and_do_not_whip() -> None:
+    """1000 kg on a cord of twenty links of 0.1 kg let go at 90°: at the bottom v² = 2 g L, at any step."""
+    for dt in (1 / 60, 1 / 240, 1 / 1000):
+        case = chain(20, law(strength=1e12, bending=0.0), mass=0.1, tip=1000.0)
+        tip, fastest = case.bodies[-1], 0.0
+        for _ in range(round(1.2 / dt)):
+            case.space.step(dt)
+            fastest = max(fastest, tip.velocity.length)
+        way = 20 * PIECE - 0.5 * PIECE
+        # Implicit, so damped: by ωh/2 with ω = √(g/L), and least where the step is short.
+        assert fastest <= 1.001 * math.sqrt(2.0 * 9.81 * way)
+        assert fastest >= (1.0 - 8.0 * dt) * math.sqrt(2.0 * 9.81 * way)
+
+
+def test_free_vibration_at_twenty_steps_a_period() -> None:
+    """First mode of a cantilever by Lobatto's rule: period within 1 %, amplitude loss under 0.2 % a cycle."""
+    assembly = sim.assemble(cantilever("rectangle 50x100 mm", 1.0, 0.01), sim.Model("lobatto", 5, "elastic-plastic"))
+    assembly.structure.scheme = AVERAGE_ACCELERATION
+    modulus, density, depth = 210e9, 7850.0, 0.1
+    frequency = 1.8751040687**2 / (2.0 * math.pi) * math.sqrt(modulus * depth**2 / 12.0 / density)
+    dt = 1.0 / frequency / 20.0
+    tip, places = assembly.pieces[-1].body, []
+    # Bent by a load that comes and goes slowly enough to leave the higher modes alone.
+    for k in range(410):
+        share = math.sin(math.pi * min(k, 200) / 400.0) ** 2
+        if k < 200:
+            tip.apply_force_at_world_point((0.0, 100.0 * share), tip.position)
+        assembly.space.step(dt)
+        places.append(assembly.nodes["tip"].now()[1])
+    places = places[210:]
+    y = np.array(places)
+    up = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0))
+    crossings = up + y[up] / (y[up] - y[up + 1])
+    period = np.diff(crossings).mean() / 20.0
+    assert period == pytest.approx(1.0, abs=0.01)
+    # Size of the first harmonic over two periods, early and late.
+    wave = np.exp(2j * np.pi * np.arange(40) / (20.0 * period))
+    early, late = abs((y[:40] * wave).sum()), abs((y[-40:] * wave).sum())
+    cycles = (len(y) - 40) / (20.0 * period)
+    assert (late / early) ** (1.0 / cycles) == pytest.approx(1.0, abs=0.002)
+
+
+def test_ledgers_add_up() -> None:
+    one = Energy(external=3.0, kinetic=1.0, numerical=2.0)
+    both = one + Energy(external=1.0, plastic=1.0)
+    assert both == Energy(external=4.0, kinetic=1.0, plastic=1.0, numerical=2.0)
+    assert both.gap == 0.0
+
+
+def test_a_structure_built_of_moving_bodies_brings_their_energy() -> None:
+    case = chain(4, clamped=False, gravity=0.0)
+    for body in case.bodies:
+        body.velocity = (3.0, 0.0)
+    case.space.step(1 / 60)
+    again = Structure(case.structure.joints)
+    assert again.energy.external == pytest.approx(0.5 * 4 * 3.12 * 9.0, rel=1e-12)
+    case.space.step(1 / 60)
+    assert abs(again.energy.gap) <= 1e-12 * again.energy.external

@@ -1,0 +1,116 @@
+"""Spaces with joints, pickled, copied and resumed; the same run in another process."""
+
+import hashlib
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pymunk
+import pytest
+from hard_cases import Case, chain, law, rests, struck
+
+from sim import AVERAGE_ACCELERATION, DuctileJoint, Limits
+
+
+def trajectory(space: pymunk.Space, steps: int = 60, dt: float = 1 / 240) -> bytes:
+    """Where all bodies are and how they move after each step, to the last bit."""
+    rows = []
+    for _ in range(steps):
+        space.step(dt)
+        rows.append([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in space.bodies])
+    return np.array(rows).tobytes()
+
+
+def yielding() -> Case:
+    case = chain(12, law(strength=0.02))
+    case.bodies[-1].velocity = (0.0, -20.0)
+    return case
+
+
+def breaking() -> Case:
+    case = chain(8, law(strength=0.02), limits=Limits(rotation=0.02))
+    case.bodies[-1].velocity = (0.0, -30.0)
+    return case
+
+
+def undamped() -> Case:
+    case = yielding()
+    case.structure.scheme = AVERAGE_ACCELERATION
+    return case
+
+
+@pytest.mark.parametrize("build", [yielding, breaking, undamped])
+def test_a_saved_run_goes_on_to_the_last_bit(build: type[Case]) -> None:
+    case = build()
+    trajectory(case.space, 20)
+    saved, copied = pickle.dumps(case.space), case.space.copy()
+    on = trajectory(case.space)
+    assert trajectory(pickle.loads(saved)) == on
+    assert trajectory(copied) == on
+    # The copy is a space of its own.
+    joint = next(iter(copied.constraints))
+    assert isinstance(joint, DuctileJoint)
+    assert joint.structure is not case.structure
+
+
+def test_what_a_structure_has_been_through_is_saved() -> None:
+    case = yielding()
+    trajectory(case.space, 20)
+    joint = list(pickle.loads(pickle.dumps(case.space)).constraints)[3]
+    assert isinstance(joint, DuctileJoint)
+    old, new = case.structure, joint.structure
+    assert new is not None
+    assert new.energy == old.energy
+    assert new.energy.plastic > 0.0
+    np.testing.assert_array_equal(new.plastic_deformation, old.plastic_deformation)
+    np.testing.assert_array_equal(new.force, old.force)
+    assert (new.newton_steps, new.residual) == (old.newton_steps, old.residual)
+
+
+def test_contacts_go_on_nearly() -> None:
+    """pymunk saves contacts, but not which of two shapes comes first: some start cold, 1e-4 m/s off and no more."""
+    case = rests(500.0, 3.12)
+    trajectory(case.space, 40)
+    resumed = pickle.loads(pickle.dumps(case.space))
+    on, again = (np.frombuffer(trajectory(space, 2)) for space in (case.space, resumed))
+    np.testing.assert_allclose(again, on, atol=1e-4)
+
+
+def test_joints_that_no_step_has_seen_can_be_saved() -> None:
+    case = chain(3)
+    space = pymunk.Space()
+    body = pymunk.Body(1.0, 1.0)
+    space.add(body, DuctileJoint(space.static_body, body, (0.0, 0.0), law(), direction=0.0))
+    again = pickle.loads(pickle.dumps(space))
+    assert trajectory(again, 3) == trajectory(space, 3)
+    assert trajectory(case.space.copy(), 3) == trajectory(case.space, 3)
+
+
+RUN = """
+import hashlib
+from hard_cases import rests, struck
+from test_sim_saving import breaking, trajectory
+for case in (breaking(), rests(500.0, 3.12), struck(10.0)):
+    print(hashlib.sha256(trajectory(case.space)).hexdigest())
+"""
+
+
+def test_another_process_comes_to_the_same_bytes() -> None:
+    here = Path(__file__).parent
+    out = subprocess.run(
+        [sys.executable, "-c", RUN], cwd=here, check=True, capture_output=True, text=True, timeout=300
+    ).stdout.split()
+    cases = (breaking(), rests(500.0, 3.12), struck(10.0))
+    assert out == [hashlib.sha256(trajectory(case.space)).hexdigest() for case in cases]
+
+
+def test_a_joint_takes_less_than_two_kilobytes() -> None:
+    """All that the solver allocates for a chain: what its arrays hold for a thousand joints more."""
+    sizes = []
+    for count in (200, 1200):
+        tables = chain(count).structure._tables
+        own = [value for value in vars(tables).values() if isinstance(value, np.ndarray)]
+        sizes.append(sum(array.nbytes for array in [*tables._arrays.values(), *own]))
+    assert (sizes[1] - sizes[0]) / 1000 < 2000.0

@@ -7,6 +7,7 @@ import io
 import math
 import time
 from collections.abc import Callable
+from dataclasses import asdict
 from typing import Any
 
 from rich.console import Console
@@ -14,6 +15,7 @@ from rich.table import Table
 
 from calibration.live_window import live
 from capacity.units import engineering
+from sim import energy
 from sim.measures import UNITS, rows
 from sim.world import World
 
@@ -117,6 +119,7 @@ def as_object(world: World, name: str, seconds: float) -> dict[str, Any]:
             "most_used": None if most is None else {"joint": world.labels[joints[most]], "capacity_used": used[most]},
             "plastic_work": float(sum(rows(joints, "dissipated"))),
         },
+        "energy": asdict(energy(world.space)),
         "unconverged": sum(structure.unconverged for structure in structures),
     }
     if world.push is not None:
@@ -154,9 +157,10 @@ def key_figures(answer: dict[str, Any]) -> list[tuple[str, str]]:
     if most is not None and most["capacity_used"] > 0.0:
         figures.append(("most used joint", f"{most['joint']}, {most['capacity_used']:.1%} of its plastic capacity"))
     figures.append(("plastic work in joints", engineering(joints["plastic_work"], "J")))
-    figures.append(
-        ("steps", f"{answer['steps']} of {engineering(answer['dt'], 's')}, {answer['iterations']} iterations")
-    )
+    length = engineering(answer["dt"], "s")
+    if answer["steps"] > 1.01 * answer["simulated_seconds"] / answer["dt"]:
+        length += " and of parts of it"
+    figures.append(("steps", f"{answer['steps']} of {length}, {answer['iterations']} iterations"))
     if answer["unconverged"]:
         figures.append(("steps that did not converge", str(answer["unconverged"])))
     return figures

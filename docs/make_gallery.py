@@ -32,9 +32,9 @@ Made by `python docs/make_gallery.py`.
 MOMENTS = {
     "bridge": 15.5,
     "car-on-ramp": 11.0,
-    "charpy": 0.012,
-    "demolisher": 9.0,
-    "gate": 8.0,
+    "charpy": 0.004,
+    "demolisher": 25.5,
+    "gate": 11.0,
     "multifloor-frame": 0.2,
     "post-impact": 0.08,
 }

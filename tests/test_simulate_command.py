@@ -19,6 +19,7 @@ def test_the_answer_has_measures_joints_and_speed(tmp_path: Path, capsys: pytest
     assert (answer["steps"], answer["dt"]) == (60, pytest.approx(1 / 60))
     assert answer["joints"]["broken"] == []
     assert answer["unconverged"] == 0
+    assert answer["energy"]["plastic"] == answer["joints"]["plastic_work"] == 0.0
     assert json.loads((tmp_path / "o" / "simulation.json").read_text()) == answer
     with (tmp_path / "o" / "joints.csv").open() as file:
         rows = list(csv.DictReader(file))

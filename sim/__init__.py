@@ -5,9 +5,10 @@ from sim import chipmunk
 chipmunk.verify()
 
 from sim.energy import Energy, energy  # noqa: E402
-from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, Limits  # noqa: E402  (nothing may run on structs that do not fit)
+from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint  # noqa: E402  (nothing may run on structs that do not fit)
 from sim.joint_arrays import JointArrays  # noqa: E402
 from sim.laws import LAWS, Bearing, ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic, section_law  # noqa: E402
+from sim.limits import Limits  # noqa: E402
 from sim.members import Assembly, JointPlace, assemble  # noqa: E402
 from sim.model import MemberModel, Model  # noqa: E402
 from sim.modes import natural_modes  # noqa: E402

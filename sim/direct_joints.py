@@ -9,8 +9,9 @@ import pymunk
 
 from capacity.behaviour import reduced, stiffness_and_damping
 from scene import GROUND, Joint, Scene
-from sim.joint import DuctileJoint, Limits
+from sim.joint import DuctileJoint
 from sim.laws import ElasticPlastic
+from sim.limits import Limits
 
 
 def add_joints(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from capacity.behaviour import from_elastic_rotation, reduced, stiffness_and_dam
 from sim import chipmunk
 from sim.kernels import AFTER_STEP, FUNCTIONS
 from sim.laws import ElasticPlastic, Law
+from sim.limits import NO_LIMITS, Limits
 
 if TYPE_CHECKING:
     from sim.structure import Structure
@@ -22,26 +22,6 @@ if TYPE_CHECKING:
 #: β and δ of the time integration (see `sim.kernels.newton`): robust and damped, or second order and undamped.
 IMPLICIT_EULER = (0.0, 1.0)
 AVERAGE_ACCELERATION = (0.25, 0.0)
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Plastic deformation, summed without sign, at which a joint breaks.
-
-    Attributes
-    ----------
-    elongation, slip : float
-        [m].
-    rotation : float
-        [rad].
-    compression_counts : bool
-        Whether plastic shortening is summed with the elongation.
-    """
-
-    elongation: float = math.inf
-    slip: float = math.inf
-    rotation: float = math.inf
-    compression_counts: bool = False
 
 
 class DuctileJoint(pymunk.Constraint):
@@ -90,7 +70,7 @@ class DuctileJoint(pymunk.Constraint):
         turn: float | None = None,
         length: float = 0.0,
         damping: tuple[float, float, float] = (0.0, 0.0, 0.0),
-        limits: Limits = Limits(),
+        limits: Limits = NO_LIMITS,
         scheme: tuple[float, float] = IMPLICIT_EULER,
         on_break: Callable[[DuctileJoint], None] | None = None,
     ) -> None:
@@ -161,7 +141,7 @@ class DuctileJoint(pymunk.Constraint):
         elastic_rotation: float | None = None,
         capacity: tuple[float, float, float] = (math.inf, math.inf, math.inf),
         translation_frequency: float = 1000.0,
-        limits: Limits = Limits(),
+        limits: Limits = NO_LIMITS,
         direction: float | None = None,
         scheme: tuple[float, float] = IMPLICIT_EULER,
         on_break: Callable[[DuctileJoint], None] | None = None,

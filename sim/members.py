@@ -12,8 +12,9 @@ import pymunk
 from scene import MemberEnd, Node, Scene
 from sim.body_loads import BodyLoad, body_loads
 from sim.followed import check_followed
-from sim.joint import DuctileJoint, Limits
+from sim.joint import DuctileJoint
 from sim.laws import Bearing, ElasticPlastic
+from sim.limits import NO_LIMITS, Limits
 from sim.member_laws import MemberLaws
 from sim.model import MemberModel, Model
 from sim.pieces import NodePoint, Piece, Pieces, Span
@@ -187,7 +188,7 @@ class _Builder:
                 turn=0.5,
                 length=share,
                 damping=(self.model.damping * k[0], self.model.damping * k[3], self.model.damping * k[5]),
-                limits=self.limits.get(name, Limits()),
+                limits=self.limits.get(name, NO_LIMITS),
                 scheme=self.model.scheme,
             )
             self._add(joint)

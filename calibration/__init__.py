@@ -10,16 +10,20 @@ True
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from calibration.fitting import Fit, LoadCase, fit
     from calibration.trials import Trial
     from calibration.tuning import Calibration, calibrate
 
-__all__ = ["Calibration", "Trial", "calibrate"]
+__all__ = ["Calibration", "Fit", "LoadCase", "Trial", "calibrate", "fit"]
+
+_ROOMS = {"Calibration": "tuning", "calibrate": "tuning", "Trial": "trials"}
+_ROOMS |= dict.fromkeys(("Fit", "LoadCase", "fit"), "fitting")
 
 
 def __getattr__(name: str) -> Any:
     # Imported on demand: the command line lives in this package and must answer before the kernels are loaded.
-    if name in __all__:
+    if name in _ROOMS:
         from importlib import import_module
 
-        return getattr(import_module("calibration.tuning"), name)
+        return getattr(import_module(f"calibration.{_ROOMS[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

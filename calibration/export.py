@@ -63,7 +63,11 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
             "seconds": best.push.seconds,
         },
         "members": {
-            name: {**asdict(plan), "why": result.why(name), "model": asdict(best.model.of(name))}
+            name: {
+                **{key: _plain(value) for key, value in asdict(plan).items()},
+                "why": result.why(name),
+                "model": asdict(best.model.of(name)),
+            }
             for name, plan in result.plans.items()
         },
         "errors": {**asdict(best.errors), "frequency": result.findings.frequency_error},
@@ -164,7 +168,7 @@ def _plain(value: Any) -> Any:
         return value.tolist()
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
-    return None if isinstance(value, float) and math.isinf(value) else value
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def curve_csv(displacement: np.ndarray, load: np.ndarray) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from calibration.export import joint_table
-from calibration.fit import Fit
+from calibration.fitting import Fit
 from calibration.tuning import Calibration
 from capacity.units import engineering
 from sim import MemberModel, Model

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from calibration.errors import Errors
-from calibration.fit import Fit
+from calibration.fitting import Fit
 from sim import Model, Push
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from calibration.errors import Findings, compare, find
-from calibration.fit import Fit, LoadCase, fit, fitted
+from calibration.fitting import Fit, LoadCase, fit, fitted
 from calibration.limits import what_limits
 from calibration.member_plans import MemberPlan, member_plans
 from calibration.planner import candidates, candidates_to_fit, cheaper, groups, relative_cost

@@ -14,7 +14,7 @@ _TWO_HALVES = [("A", "C"), ("C", "B")]
 
 
 def open_scenes(cases: Mapping[str, Any]) -> dict[str, str]:
-    """Scene files of groups 1 to 5 by a name that begins with the case's."""
+    """Scene files of groups 1 to 5 and 7 by a name that begins with the case's."""
     texts: dict[str, str] = {}
     for case, section in (("C1-rect", RECTANGLE), ("C1-ipe300", IPE300), ("C1-chs", TUBE)):
         inputs, outputs = cases[case]["inputs"], cases[case]["outputs"]
@@ -39,6 +39,17 @@ def open_scenes(cases: Mapping[str, Any]) -> dict[str, str]:
         1.0, push_down("B", furthest), [down("B")], section=STRIP, material=STRONG, kinematics="large"
     )
     texts["C5-epp-corot"] = cantilever(2.0, push_down("B", 1.0), [down("B")], section=RECTANGLE, kinematics="large")
+    return texts | _continua(cases)
+
+
+def _continua(cases: Mapping[str, Any]) -> dict[str, str]:
+    texts = {}
+    for case in ("C7-ps-Lh5", "C7-ps-Lh2"):
+        furthest = cases[case]["outputs"]["delta_m"][-1]
+        for root in ("clamped", "contraction-free"):
+            text = cantilever(cases[case]["inputs"]["L_m"], push_down("B", furthest), section=RECTANGLE)
+            text = text.replace('theory = "euler-bernoulli"', 'theory = "timoshenko"')
+            texts[f"{case}-{root}"] = f'reference = "plane-stress"\n{text}\n[plane]\nroot = "{root}"'
     return texts
 
 

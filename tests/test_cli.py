@@ -91,6 +91,24 @@ def test_files_are_complete(calibrated: tuple[dict[str, Any], Path]) -> None:
     np.testing.assert_array_equal(curve[:, 1], answer["reference"]["load"])
 
 
+def test_result_says_what_members_need_and_how_far_each_kind_of_answer_is_off(
+    calibrated: tuple[dict[str, Any], Path],
+) -> None:
+    answer, folder = calibrated
+    assert answer["limit"] == ""
+    assert answer["members"]["beam"]["kind"] == "elastic-plastic"
+    assert answer["members"]["beam"]["utilisation"] == pytest.approx(1.5, rel=1e-3)  # M_p / M_yield of a rectangle
+    assert abs(answer["errors"]["frequency"]) < 1e-3
+    assert [hinge["where"] for hinge in answer["hinges"]] == ["root"]
+    assert answer["hinges_in_order"] is True
+    markdown = (folder / "report.md").read_text(encoding="utf-8")
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    for title in ("Capacities", "What each member needs", "Errors", "Hinges", "Joints", "Speed against error"):
+        assert f"## {title}\n" in markdown
+        assert f"<h2>{title}</h2>" in page
+    assert markdown.count("| 2 |") >= len(answer["pareto"])  # iterations of every model tried
+
+
 def test_page_stands_alone(calibrated: tuple[dict[str, Any], Path]) -> None:
     page = (calibrated[1] / "report.html").read_text(encoding="utf-8")
     assert page.count("<svg") == 2
@@ -127,8 +145,10 @@ def test_running_again_gives_the_same_numbers(
 
 
 def test_target_that_is_not_met_ends_with_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert ductile("calibrate", "cantilever", "--target-error", "0.05 %", "-o", str(tmp_path / "o")) == 1
-    assert capsys.readouterr().out.startswith("Target missed")
+    assert ductile("calibrate", "cantilever", "--target-error", "0.02 %", "-o", str(tmp_path / "o")) == 1
+    shown = capsys.readouterr().out
+    assert shown.startswith("Target missed")
+    assert "What limits it" in shown
     assert (tmp_path / "o" / "report.html").exists()
 
 

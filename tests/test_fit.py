@@ -8,7 +8,7 @@ from cantilevers import cantilever
 from conftest import CASES
 from frames import frame_text, push_down
 
-from calibration.fit import LoadCase, fit, fitted
+from calibration.fitting import LoadCase, fit, fitted
 from calibration.small_displacements import push_model
 from capacity import InputError
 from scene import Scene, parse_scene

@@ -2,14 +2,16 @@
 
 | file | job |
 |---|---|
-| ``layout`` | what lies where in the memory that kernels and `sim.structure` share |
+| ``layout``, ``views`` | what lies where in the memory that kernels and `sim.structure` share |
 | ``kinematics`` | deformations of the joints and their gradient |
+| ``inertia`` | masses of the bodies, with geometric stiffness where it must be implicit |
 | ``blocks`` | the matrix: assembly, L D Lᵀ by 3 × 3 blocks, substitution |
-| ``newton`` | impulses of the joints: Newton's method with a line search |
+| ``residual``, ``newton`` | impulses of the joints: Newton's method with a line search |
 | ``spread`` | a load pattern under displacement control |
-| ``contacts`` | contacts of the structure's bodies, solved through the structure |
+| ``contacts``, ``complement`` | contacts of the structures' bodies, solved through the structures |
 | ``commit`` | the end of a step: plastic state, breaking, what the joints bore |
-| ``callbacks`` | the functions that Chipmunk calls |
+| ``energy``, ``guard`` | the ledger, and no energy from nowhere |
+| ``step``, ``callbacks`` | one step of a structure, and the functions that Chipmunk calls |
 """
 
 from sim.kernels.callbacks import AFTER_STEP, FUNCTIONS

@@ -40,7 +40,7 @@ from sim.kernels.layout import (
     RESULT_VISCOUS,
     STEP,
 )
-from sim.kernels.newton import reach_of
+from sim.kernels.residual import reach_of
 from sim.memory import call_law, floats
 
 

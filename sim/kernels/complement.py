@@ -49,7 +49,7 @@ from sim.kernels.layout import (
     WANTED,
     WHERE,
 )
-from sim.kernels.newton import advance, linearise, reach_of
+from sim.kernels.residual import advance, linearise, reach_of
 from sim.memory import floats
 
 _SWEEPS = 200

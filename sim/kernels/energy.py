@@ -93,6 +93,7 @@ def close(c, t):  # type: ignore[no-untyped-def]
     pattern, weight = views.per_body(t, at.PATTERN), views.weight(t)
     solved = views.per_body(t, at.VELOCITY)
     w, factor = weight_of_end(settings), settings[SPREAD_IMPULSE]
+    touching, driven, turns = t[at.CONTACTS] > 0 or t[at.HEAD] != 0, t[at.SPREAD] == 1, t[at.TURNING] == 1
     before, after, change, outside, turning, contact_work = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(t[at.MOVING]):
         b = floats(body_at[i], BODY_WORDS)
@@ -105,10 +106,11 @@ def close(c, t):  # type: ignore[no-untyped-def]
             after += mass * v1 * v1
             change += mass * dv * dv
             outside += external[i, axis] * vw
-            contact_work += struck[i, axis] * vw
-            if t[at.SPREAD] == 1:
+            if touching:
+                contact_work += struck[i, axis] * vw
+            if driven:
                 outside += factor * pattern[i, axis] * vw
-            if t[at.TURNING] == 1:
+            if turns:
                 turning += mass * (end[i, axis] - solved[i, axis]) * vw
                 if axis == 2:
                     turning -= (weight[i, INERTIA_I] - mass) * solved[i, axis] * vw

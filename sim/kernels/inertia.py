@@ -53,9 +53,12 @@ def weigh(t):  # type: ignore[no-untyped-def]
         x, y = impulse[k, 0], impulse[k, 1]
         if x == 0.0 and y == 0.0:
             continue
+        bending = h * h * (response[k, TANGENT + 5] - damping[k, 2] / reach)
+        arms = abs(geometry[k, 0]) + abs(geometry[k, 1]) + abs(geometry[k, 2]) + abs(geometry[k, 3])
+        if h * (abs(x) + abs(y)) * arms <= bending:
+            continue  # it cannot outweigh what bends against it
         # Impulse on b, and less it on a.
         px, py = jacobian[k, 3] * x + jacobian[k, 9] * y, jacobian[k, 4] * x + jacobian[k, 10] * y
-        bending = h * h * (response[k, TANGENT + 5] - damping[k, 2] / reach)
         for side in range(2):
             i = joint_bodies[k, side]
             if i < moving:

@@ -14,7 +14,7 @@ from fem_reference import NotConverged, PlanePush, field_files, plane_push, push
 from fem_reference.plane.beam_mesh import beam_mesh, tensor_mesh
 from fem_reference.plane.bodies import plane_scene
 from fem_reference.plane.path import Trace, trace
-from scene import Load, Plane, Scene
+from scene import Load, Plane, Push, Scene
 
 
 def push(level: int, length: float, distances: np.ndarray, root: str = "clamped", **body: Any) -> Trace:
@@ -97,7 +97,7 @@ def test_load_control_follows_the_same_curve_and_stops_at_the_limit() -> None:
     limit = push(0, 0.2, np.linspace(0.0, 4e-3, 25)[1:]).load[-1]
     path = trace(held_body(beam_mesh(0.2, 0.1, 0)), [np.linspace(0.0, 1.1 * limit, 12)[1:]], control="load")
     assert path.stopped.startswith("no equilibrium beyond a load of")
-    assert 0.98 * limit <= path.load[-1] <= 1.0001 * limit
+    assert path.load[-1] == pytest.approx(limit, rel=1e-3)
     assert np.isfinite(path.displacement).all()
 
 
@@ -214,6 +214,28 @@ def test_proportional_loads_give_a_load_factor(short_push: PlanePush) -> None:
     np.testing.assert_allclose(1000.0 * factor.load, short_push.load)
 
 
+def test_a_scene_led_by_load_gives_the_same_curve(short_push: PlanePush) -> None:
+    """Up to a load that it bears, and up to the limit, which it names; its estimate is of the load, too."""
+    scene = short(root="contraction-free")
+    bearable, too_much = (
+        msgspec.structs.replace(
+            scene, pushed=Push(node="tip", direction=(0.0, -1.0), control="load", largest_load=load)
+        )
+        for load in (120e3, 170e3)
+    )
+    found = plane_push(bearable, 1.0)
+    assert found.load[-1] == pytest.approx(120e3)
+    there = np.interp(found.displacement, short_push.displacement, short_push.load)
+    np.testing.assert_allclose(found.load, there, atol=2e-3 * 120e3)
+    assert 0.0 < found.error_estimate <= 5e-3
+    stopped = plane_push(too_much, 1.0)
+    assert stopped.outcome.startswith("no equilibrium beyond a load of")
+    # Reference case C7-ps-Lh2 with a free root: 154466 N on its finest mesh.
+    assert stopped.load[-1] == pytest.approx(154466.0, rel=2e-3)
+    # Points led by load are far apart where the curve is flat; straight lines between them count as error.
+    assert 0.0 < stopped.error_estimate <= 1.5e-2
+
+
 def test_a_guided_tip_bears_both_ends_hinges() -> None:
     """Fixed–guided: P L = 2 M_p in beam theory; the short member's clamps add a few per cent."""
     scene = cantilever("rectangle 50x100 mm", 0.5, 0.01)
@@ -228,6 +250,7 @@ def test_a_guided_tip_bears_both_ends_hinges() -> None:
     ("change", "fault"),
     [
         ({"kinematics": "large"}, "small displacements"),
+        ({"pushed": Push(node="tip", direction=(0, -1), distance=1e-3, control="arc-length")}, "displacement or load"),
         ({"loads": (Load(node="tip", moment=1.0),)}, "proportional loads"),
         ({"section": "IPE 100"}, "rectangular section"),
         ({"support": "pinned"}, "clamped at the other end"),

@@ -46,12 +46,12 @@ class PlaneScene:
 
 def plane_fault(scene: Scene) -> str | None:
     """Why plane stress cannot follow ``scene``; None when it can."""
-    if scene.pushed is not None and scene.pushed.control != "displacement":
-        return "plane stress follows pushes under displacement control"
+    if scene.pushed is None or (len(scene.members) != 1 and scene.meshed is None):
+        return "plane stress follows the push of one straight member, or of a mesh"
+    if scene.push.control == "arc-length":
+        return "plane stress follows pushes led by displacement or load"
     if scene.meshed is not None:
         return None
-    if len(scene.members) != 1 or scene.pushed is None:
-        return "plane stress follows the push of one straight member, or of a mesh"
     (member,) = scene.members.values()
     section = member.section
     square = section.area * section.depth

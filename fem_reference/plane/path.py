@@ -107,6 +107,8 @@ def trace(
                 record()
     except NotConverged as error:
         points.stopped = str(error)
+        if (body.position - start, body.load) != (points.displacement[-1], points.load[-1]):
+            record()  # how far it came on the way to the next point
         if snapshots and len(points.load) - 1 not in kept:
             points.snapshots.append((points.displacement[-1], body.state))
     return points

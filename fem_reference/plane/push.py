@@ -12,7 +12,7 @@ from fem_reference.hinge_events import HingeEvent
 from fem_reference.legs import even_legs, resolved_legs
 from fem_reference.plane.bodies import plane_scene
 from fem_reference.plane.continuum import Continuum, State
-from fem_reference.plane.equilibrium import Body
+from fem_reference.plane.equilibrium import Body, Control
 from fem_reference.plane.path import Trace, trace
 from fem_reference.pushover import Energy
 from scene import Scene
@@ -147,20 +147,24 @@ def plane_push(
     """
     started = time.perf_counter()
     found = plane_scene(scene)
-    stops = scene.push.stops()
+    led_by_load = scene.push.control == "load"
+    stops = (scene.push.largest_load * found.unit_load,) if led_by_load else scene.push.stops()
+    control: Control = "load" if led_by_load else "displacement"
     legs = even_legs(stops, POINTS if len(stops) == 1 else POINTS_A_LEG)
 
     def solve(level: int) -> tuple[Body, Trace]:
         body = found.body(level)
-        path = trace(body, legs, unload=scene.push.unload, snapshots=SNAPSHOTS if level else 0, watch=watch)
+        path = trace(body, legs, control, scene.push.unload, SNAPSHOTS if level else 0, watch)
         return body, path
 
     _, first = solve(0)
-    legs = resolved_legs(stops, legs, np.array(first.load))
+    if not led_by_load:
+        legs = resolved_legs(stops, legs, np.array(first.load))
     coarse_body, coarse = solve(0)
     for level in range(1, found.levels):
         body, fine = solve(level)
-        error = max(SAFETY * _difference(fine.load, coarse.load), fine.imbalance)
+        apart = _apart(fine, coarse) if led_by_load else _difference(fine.load, coarse.load)
+        error = max(SAFETY * apart, fine.imbalance)
         if error <= tolerance or level == found.levels - 1:
             break
         coarse_body, coarse = body, fine
@@ -188,6 +192,16 @@ def plane_push(
             body.continuum, tuple(at for at, _ in fine.snapshots), tuple(state for _, state in fine.snapshots)
         ),
     )
+
+
+def _apart(fine: Trace, coarse: Trace) -> float:
+    """`_difference` of loads of paths led by load: at the same displacements, on the way there and of the largest."""
+    load, displacement = np.array(fine.load), np.array(fine.displacement)
+    top, coarse_top = int(np.argmax(load)) + 1, int(np.argmax(coarse.load)) + 1
+    reached = displacement[:top] <= coarse.displacement[coarse_top - 1]
+    other = np.interp(displacement[:top], coarse.displacement[:coarse_top], coarse.load[:coarse_top])
+    limits = abs(load[top - 1] - coarse.load[coarse_top - 1])
+    return float(max(np.abs(load[:top] - other)[reached].max(), limits) / load[top - 1])
 
 
 def _difference(fine: list[float], coarse: list[float], scale: float = 0.0) -> float:

@@ -1,6 +1,7 @@
 """From a section to a beam that bends in a game: calibrate it, build it in a space of one's own, drop a crate on it.
 
-What the crate brings is what the root's hinge takes, m g (h + θ L) = M_max θ, so θ = m g h / (M_max - m g L).
+What the crate brings is what the root's hinge takes, m g (h + θ a) = M_max θ, so θ = m g h / (M_max - m g a), less what
+the blow itself and the beam's vibrations take.
 """
 
 import pymunk

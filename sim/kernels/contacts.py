@@ -9,6 +9,8 @@ Contacts are kept in an order of their own, by bodies and by Chipmunk's hash of 
 which Chipmunk finds them depends on what its collision tree has been through.
 """
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -76,9 +78,10 @@ from sim.kernels.layout import (
 )
 from sim.memory import floats, integers
 
-# Share of the way to the overlap that a space allows that a pressed contact may sink in a step. Where surfaces turn,
-# their distance changes with the square of the step; a contact that kept none of that overlap would be lost, and found
-# again a step of free motion later.
+# Surfaces that turn come apart by a distance that grows with the square of the step, and a contact that was lost would be
+# found again a step of free motion later. So a pressed contact keeps this many times that distance of overlap, within
+# what the space allows, and comes this share of the way to it in a step.
+_KEPT = 8.0
 _SETTLE = 0.5
 
 
@@ -174,7 +177,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 touch[FRICTION] = f[ARBITER_FRICTION]
                 touch[SURFACE] = -ny * f[ARBITER_SURFACE] + nx * f[ARBITER_SURFACE + 1]
                 touch[WANTED] = -contact[CONTACT_BOUNCE]
-                spare = slop + overlap_less(w, contact, nx, ny)
+                spare = min(slop, _KEPT * parting(w, contact, h)) + overlap_less(w, contact, nx, ny)
                 if touch[WANTED] == 0.0 and spare > 0.0:
                     touch[WANTED] = -_SETTLE * spare / h
                 touch[PUSH] = contact[CONTACT_BIAS]
@@ -196,6 +199,15 @@ def overlap_less(arbiter, contact, nx, ny):  # type: ignore[no-untyped-def]
     x = b[X] + contact[CONTACT_R2] - a[X] - contact[CONTACT_R1]
     y = b[X + 1] + contact[CONTACT_R2 + 1] - a[X + 1] - contact[CONTACT_R1 + 1]
     return nx * x + ny * y
+
+
+@njit(inline="always", error_model="numpy")
+def parting(arbiter, contact, h):  # type: ignore[no-untyped-def]
+    """How far the surfaces at a contact come apart in a step by turning alone, ½ r (ω h)² of both bodies [m]."""
+    a, b = floats(arbiter[ARBITER_BODY_A], BODY_WORDS), floats(arbiter[ARBITER_BODY_B], BODY_WORDS)
+    ra = math.hypot(contact[CONTACT_R1], contact[CONTACT_R1 + 1])
+    rb = math.hypot(contact[CONTACT_R2], contact[CONTACT_R2 + 1])
+    return 0.5 * (ra * (a[SPIN] * h) ** 2 + rb * (b[SPIN] * h) ** 2)
 
 
 @njit(error_model="numpy")

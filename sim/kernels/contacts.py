@@ -78,9 +78,9 @@ from sim.kernels.layout import (
 )
 from sim.memory import floats, integers
 
-# Surfaces that turn come apart by a distance that grows with the square of the step, and a contact that was lost would be
-# found again a step of free motion later. So a pressed contact keeps this many times that distance of overlap, within
-# what the space allows, and comes this share of the way to it in a step.
+# Surfaces that turn come apart by a distance that grows with the square of the step, and a contact that was lost would
+# be found again a step of free motion later. So a pressed contact keeps this many times that distance of overlap,
+# within what the space allows, and comes this share of the way to it in a step.
 _KEPT = 8.0
 _SETTLE = 0.5
 

@@ -39,7 +39,7 @@ def curves(result: Calibration) -> Figure:
         top.plot(1e3 * reference.displacement, 1e-3 * reference.load, color=REFERENCE, lw=2.5, label="reference (FEM)")
         label = f"{push.bodies} rigid bodies, {push.joints} joints"
         top.plot(1e3 * push.displacement, 1e-3 * push.load, color=MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
-        factor = any(load.kind == "proportional" for load in result.scene.loads)
+        factor = bool(result.scene.loads_of("proportional"))
         top.set_ylabel("load factor / 1000" if factor else "load [kN]")
         top.legend(loc="lower right")
         difference = push.load_at_distances - reference.load

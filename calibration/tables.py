@@ -148,16 +148,22 @@ def _fit(found: Fit) -> Sheet:
 
 def _hinges(result: Calibration) -> Sheet:
     scale = max(abs(float(load)) for load in result.reference.load)
+    is_factor = bool(result.scene.loads_of("proportional"))
+
+    def said(load: float) -> str:
+        return f"{load:.5g}" if is_factor else engineering(load, "N")
+
     rows = []
     for pair in result.findings.hinges:
         model = "none"
         difference = "–"
         if pair.model_load is not None:
-            model, difference = f"{pair.model_load:.5g}", f"{100.0 * (pair.model_load - pair.load) / scale:+.2f} %"
-        rows.append((pair.where, f"{pair.load:.5g}", model, difference))
+            model, difference = said(pair.model_load), f"{100.0 * (pair.model_load - pair.load) / scale:+.2f} %"
+        rows.append((pair.where, said(pair.load), model, difference))
     note = (
         "Loads at which plastic hinges form, in the reference's order; a joint counts as one at 98.5 % of its plastic "
         "moment. Differences are shares of the peak load."
+        + (" Loads are load factors." if is_factor else "")
     )
     return Sheet("Hinges", note, ("<where", "reference", "model", "difference"), tuple(rows))
 

@@ -64,9 +64,9 @@ def pushed(scene: Scene, model: Model, way: np.ndarray) -> sim.Push:
     return (push_over_small if scene.kinematics == "small" else sim.push_over)(scene, model, way)
 
 
-@pytest.mark.parametrize("name", [name for name in SCENES if not name.startswith("C3")])
+@pytest.mark.parametrize("name", [name for name in SCENES if not name.startswith(("C3", "C7"))])
 def test_paths_are_followed_within_one_per_cent_of_their_peak(name: str) -> None:
-    """P–Δ comes of the geometry: the bodies are where they are."""
+    """P–Δ comes of the geometry: the bodies are where they are. Cycles (C3) are below; a continuum (C7) is fitted."""
     scene = parse_scene(SCENES[name], name)
     displacements, loads = curve(name)
     way = np.linspace(0.0, displacements[-1], 401)

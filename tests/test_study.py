@@ -73,6 +73,8 @@ def test_a_result_belongs_to_its_scene_and_point() -> None:
 def stopped(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     """A study in a process group of its own that gets Ctrl-C after its first results; its folder, and what it said."""
     folder = tmp_path_factory.mktemp("study")
+    # Tests that run in the background may have been told to ignore Ctrl-C, which a child would inherit.
+    ours = signal.signal(signal.SIGINT, signal.default_int_handler)
     process = subprocess.Popen(
         [sys.executable, "-m", "calibration.cli", "study", "cantilever", "--joints", "3,4,5,6,7", "--dt",
          "1/60 s, 1/240 s", "--laws", "elastic-plastic, fibre", "--no-hard-cases", "--executor",
@@ -80,6 +82,7 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
+    signal.signal(signal.SIGINT, ours)
     while process.poll() is None and not ((folder / NAME).exists() and (folder / NAME).stat().st_size):
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)

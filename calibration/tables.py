@@ -162,8 +162,7 @@ def _hinges(result: Calibration) -> Sheet:
         rows.append((pair.where, said(pair.load), model, difference))
     note = (
         "Loads at which plastic hinges form, in the reference's order; a joint counts as one at 98.5 % of its plastic "
-        "moment. Differences are shares of the peak load."
-        + (" Loads are load factors." if is_factor else "")
+        "moment. Differences are shares of the peak load." + (" Loads are load factors." if is_factor else "")
     )
     return Sheet("Hinges", note, ("<where", "reference", "model", "difference"), tuple(rows))
 

@@ -194,7 +194,10 @@ class State:
             work = max(self._work, abs(float(applied @ d)) + abs(reactions))
             on_goal = abs(gap) <= 1e-9 * max(abs(goal), abs(distance))
             if abs(residual @ change) <= tolerance * work and on_goal:
-                self._accept(d, load, distance, response, applied, residual)
+                # The load itself may still be out of balance: where every section yields it moves nothing, and
+                # does no work.
+                left = residual + rise * frame.pattern[free]
+                self._accept(d, load + rise, distance, response, applied + rise * frame.pattern, left)
                 self._work = work
                 return True
             # Line search: not so far that the out-of-balance forces explode.

@@ -43,6 +43,16 @@ def test_collapse_load_is_exact_on_any_mesh() -> None:
     assert loads(scene, 4, 8, np.array([0.05, 0.1]))[-1] == pytest.approx(29375.0, rel=1e-6)
 
 
+def test_a_bar_pulled_along_its_axis_never_bears_more_than_it_can() -> None:
+    """All its sections yield at once, at N_pl and a displacement of fy L / E."""
+    scene = cantilever("rectangle 50x100 mm", 2.0, 20e-3)
+    push = msgspec.structs.replace(scene.push, direction=(1.0, 0.0))
+    answer = pushover(msgspec.structs.replace(scene, pushed=push))
+    exact = np.minimum(answer.displacement * 210e9 / 2.0, 235e6) * 0.05 * 0.1
+    np.testing.assert_allclose(answer.load, exact, atol=1e-8 * 235e6 * 0.05 * 0.1)
+    assert answer.imbalance <= 1e-8
+
+
 def test_error_falls_with_the_square_of_the_element_size() -> None:
     scene = cantilever("rectangle 50x100 mm", 1.0, 0.02)
     distances = np.linspace(0.0, 0.02, 41)[1:]

@@ -16,14 +16,16 @@ import numpy as np
 
 from sim.body_loads import BodyLoad
 from sim.pieces import NodePoint
-from sim.structure import Structure
+from sim.structure import SolverError, Structure
 
 #: Time over which the node's ways are remembered, and over which it is brought back to where it is wanted [s].
 _MEMORY, _RETURN = 0.5, 0.2
+#: How far off its way, in lengths of the whole way, the node has gone for good.
+_ASTRAY = 10.0
 
 
 class LoadDriver:
-    """Drives ``loads`` on ``structure`` so that ``node`` goes its way along ``direction``.
+    """Drives ``loads`` on ``structure`` so that ``node`` goes its way along ``direction``, of about ``reach`` [m].
 
     Attributes
     ----------
@@ -34,8 +36,14 @@ class LoadDriver:
     """
 
     def __init__(
-        self, structure: Structure, loads: Sequence[BodyLoad], node: NodePoint, direction: tuple[float, float]
+        self,
+        structure: Structure,
+        loads: Sequence[BodyLoad],
+        node: NodePoint,
+        direction: tuple[float, float],
+        reach: float,
     ) -> None:
+        self._reach = reach
         self._structure, self._loads, self._node, self._direction = structure, loads, node, np.array(direction)
         self._centre = NodePoint(node.body, (node.body.center_of_gravity.x, node.body.center_of_gravity.y))
         self._index = {body: i for i, body in enumerate(structure.bodies)}
@@ -62,10 +70,22 @@ class LoadDriver:
         self._structure.drive(self._pattern, self._stiffness, self._gap)
 
     def read(self, dt: float) -> None:
-        """After that step: where the node is, and by what the loads were multiplied."""
+        """After that step: where the node is, and by what the loads were multiplied.
+
+        Raises
+        ------
+        SolverError
+            When the node has left its way for good.
+        """
         before = self.displacement
         self.displacement = float((self._node.ahead(dt) - self._origin) @ self._direction)
         self.factor = self._structure.load_factor
+        off = abs(self.displacement - self._wanted)
+        if not off <= _ASTRAY * self._reach:
+            raise SolverError(
+                f"the pushed node has left its way of {self._reach:.4g} m by {off:.4g} m; take shorter steps or fewer "
+                "joints, or look for a structure that its loads carry away"
+            )
         moved, worked = self.displacement - before, self._gap - self.factor / self._stiffness
         keep = math.exp(-dt / _MEMORY)
         self._both = keep * self._both + worked * moved

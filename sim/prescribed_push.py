@@ -43,7 +43,7 @@ class PrescribedPush:
         settle(scene, assembly, 1e-9 * push.way())
         node = assembly.nodes[push.node]
         loads = assembly.pattern or (BodyLoad(node.body, scene.push_direction(), 0.0, node.point),)
-        self._driver = LoadDriver(assembly.structure, loads, node, scene.push_direction())
+        self._driver = LoadDriver(assembly.structure, loads, node, scene.push_direction(), push.way())
         self._structure = assembly.structure
         self._stops: tuple[float, ...] = (0.0, *push.stops(), *((0.0,) if push.unload else ()))
         self.duration = WAY_TIME * (len(self._stops) - 1)

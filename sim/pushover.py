@@ -110,7 +110,7 @@ def push_over(
     Raises
     ------
     SolverError
-        When a step cannot be taken, or too many find no solution.
+        When a step cannot be taken, too many find no solution, or the pushed node leaves its way.
     """
     assembly = assemble(scene, model, shapes=False)
     settle(scene, assembly, 1e-9 * scene.push.way())
@@ -121,7 +121,7 @@ def push_over(
     steps = steps_a_leg * len(legs)
     travel = np.concatenate([_eased(leg, steps_a_leg) for leg in legs])
     loads = assembly.pattern or (BodyLoad(node.body, scene.push_direction(), 0.0, node.point),)
-    driver = LoadDriver(structure, loads, node, scene.push_direction())
+    driver = LoadDriver(structure, loads, node, scene.push_direction(), float(np.abs(distances).max()))
     newton_before = structure.newton_steps
     displacement, load = np.empty(steps), np.empty(steps)
     force = np.zeros((steps + 1, len(assembly.places), 3))

@@ -11,7 +11,9 @@ import sim
 from capacity import Interaction
 from fem_reference import pushover
 from scene import Scene
-from sim import Model
+from sim import Model, SolverError
+from sim.body_loads import BodyLoad
+from sim.load_driver import LoadDriver
 
 FINE = Model("lobatto", 9, "fibre", 16)
 
@@ -121,3 +123,17 @@ def test_neither_step_nor_iterations_matter_to_a_slow_push(law: str) -> None:
         assert push.unconverged == 0
         loads.append(push.load_at_distances[2:])
     assert max(np.abs(load - loads[0]).max() for load in loads) <= 3e-3 * loads[0].max()
+
+
+def test_a_push_whose_node_runs_away_is_stopped_and_told() -> None:
+    """Before its way grows to where numbers end; a warning would fail this test."""
+    scene = two_storeys(0.01, "large")
+    assembly = sim.assemble(scene, Model("lobatto", 3, "elastic-plastic"), shapes=False)
+    node, way = assembly.nodes[scene.push.node], scene.push_direction()
+    driver = LoadDriver(assembly.structure, [BodyLoad(node.body, way, 0.0, node.point)], node, way, reach=0.1)
+    driver.aim(0.001, 1 / 60)
+    assembly.step(1 / 60)
+    driver.read(1 / 60)
+    node.body.velocity = (1e200, 0.0)
+    with pytest.raises(SolverError, match=r"left its way of 0\.1 m by 1\.667e\+198 m"):
+        driver.read(1 / 60)

@@ -7,8 +7,9 @@ from pytest_benchmark.fixture import BenchmarkFixture
 
 from capacity import capacity, parse_material, parse_section
 from fem_reference import pushover
-from scene import load_scene
+from scene import builtin_text, load_scene, parse_scene
 from sim import DuctileJoint, ElasticPlastic, Structure
+from sim.world import World
 
 STEEL = parse_material("fy=235 MPa, E=200 GPa, rho=7800 kg/m^3")
 SECTION = parse_section("rectangle 100x100 mm")
@@ -51,6 +52,18 @@ def test_elastic_chain_step(benchmark: BenchmarkFixture, pieces: int) -> None:
     benchmark(run)
     benchmark.extra_info["microseconds_per_joint_step"] = 1e6 * benchmark.stats.stats.median / (steps * pieces)
     assert structure.unconverged == 0
+
+
+def test_frame_of_a_thousand_joints(benchmark: BenchmarkFixture) -> None:
+    """One step at 1/60 s of ten floors of ten bays under own weight; the real-time factor is in the extra column."""
+    text = builtin_text("multifloor-frame")
+    four, ten = (", ".join(['"2.5 m"'] * n) for n in (4, 10))
+    world = World(parse_scene(text[: text.index('[measures."')].replace(four, ten), "frame"), dt=1 / 60)
+    world.step()
+    benchmark(world.step)
+    joints = [joint for joint in world.space.constraints if isinstance(joint, DuctileJoint)]
+    assert len(joints) >= 1000
+    benchmark.extra_info["real_time_factor"] = 1.0 / 60.0 / benchmark.stats.stats.median
 
 
 def test_reference_pushover(benchmark: BenchmarkFixture) -> None:

@@ -59,6 +59,9 @@ QUANTITIES = {
     "number": ("", "0.01"),
 }
 
+#: Numbers other than 0 lie between this [SI] and its inverse: far from where products of a few of them end.
+_LARGEST = 1e30
+
 
 @cache
 def _registry() -> "pint.UnitRegistry[float]":
@@ -84,16 +87,19 @@ def to_si(value: str | float | int, quantity: str, place: str) -> float:
     Raises
     ------
     InputError
-        When the text is no number with a unit, the unit does not fit, or the number is not finite.
+        When the text is no number with a unit, the unit does not fit, or the number is not finite or out of all
+        proportion.
     """
     unit, example = QUANTITIES[quantity]
     hint = f'write {quantity} such as "{example}"'
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
         raise InputError(place, f"{value!r} is no {quantity}", hint)
-    number = _parse(value, unit, quantity, place, hint) if isinstance(value, str) else float(value)
-    if not math.isfinite(number):
+    number = _parse(value, unit, quantity, place, hint) if isinstance(value, str) else value
+    if not -math.inf < number < math.inf:
         raise InputError(place, f"{value!r} is not a finite {quantity}", hint)
-    return number
+    if number != 0.0 and not 1.0 / _LARGEST <= abs(number) <= _LARGEST:
+        raise InputError(place, f"a {quantity} of {value!s:.40} is out of all proportion", hint)
+    return float(number)
 
 
 def _parse(text: str, unit: str, quantity: str, place: str, hint: str) -> float:

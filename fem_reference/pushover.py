@@ -14,7 +14,7 @@ from fem_reference.hinge_events import HingeEvent, hinge_events
 from fem_reference.judging import difference, energy_error, outcome, with_errors
 from fem_reference.legs import even_legs, resolved_legs, with_events
 from fem_reference.member_results import MemberErrors, MemberResult, member_results
-from fem_reference.paths import Trace
+from fem_reference.paths import NotConverged, Trace
 from fem_reference.programme import trace
 from scene import Scene
 
@@ -127,13 +127,17 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
     InputError
         When the scene has no push.
     NotConverged
-        When the dead loads find no equilibrium.
+        When the dead loads find no equilibrium, or the push none from its start on.
     """
     started = time.perf_counter()
     elements, fibres = _COARSEST
     stops = scene.push.stops() if scene.push.control != "load" else (scene.push.largest_load,)
     legs = even_legs(stops, POINTS if len(stops) == 1 else POINTS_A_LEG)
     first = _solve(scene, elements, fibres, legs, watch)
+    if len(first.trace.load) == 1:
+        raise NotConverged(
+            f"{first.trace.stopped}: the structure may move without any load; support it, or take a release out"
+        )
     if scene.push.control == "displacement":
         legs = resolved_legs(stops, legs, np.array(first.trace.load))
     if scene.yielding == "ideal-hinges" and len(legs) == 1 and scene.push.control == "displacement":

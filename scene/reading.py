@@ -51,7 +51,8 @@ def load_scene(name: str) -> Scene:
     if not name.endswith(".toml"):
         return parse_scene(builtin_text(name), name)
     try:
-        text = Path(name).read_text(encoding="utf-8")
+        # Some editors begin a file with a byte order mark.
+        text = Path(name).read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
         raise InputError(name, "there is no such file", "`ductile scenes NAME > my.toml` writes one to edit") from error
     except (OSError, UnicodeDecodeError) as error:

@@ -101,6 +101,13 @@ def test_a_structure_that_cannot_carry_its_weight_is_reported() -> None:
         pushover(scene)
 
 
+def test_a_mechanism_is_told_instead_of_an_empty_path() -> None:
+    scene = cantilever("rectangle 50x100 mm", 1.0, 0.05)
+    hinged = msgspec.structs.replace(scene.members["beam"], releases=("from",))
+    with pytest.raises(NotConverged, match=r"beyond a displacement of 0 m.*take a release out"):
+        pushover(msgspec.structs.replace(scene, members={"beam": hinged}))
+
+
 def test_a_table_that_grows_steeper_is_refused() -> None:
     scene = cantilever("rectangle 50x100 mm", 1.0, 0.1)
     steel = parse_material("curve=0.001:200 0.01:210 0.02:300 MPa")

@@ -21,7 +21,7 @@ def test_cantilever() -> None:
 
 def test_written_out_scene_is_the_same(tmp_path: Path) -> None:
     file = tmp_path / "my.toml"
-    file.write_text(builtin_text("cantilever"), encoding="utf-8")
+    file.write_text(builtin_text("cantilever"), encoding="utf-8-sig")  # a byte order mark does no harm
     assert load_scene(str(file)).push == load_scene("cantilever").push
 
 
@@ -30,6 +30,9 @@ def test_written_out_scene_is_the_same(tmp_path: Path) -> None:
     [
         ("distance =", "distanc =", "push", 'did you mean "distance"'),
         ('["1 m"', '["1 k"', "nodes.tip.at[0]", "unknown unit"),
+        ('["1 m"', '["1e200 m"', "nodes.tip.at[0]", "out of all proportion"),
+        ('["1 m"', '["1e-200 m"', "nodes.tip.at[0]", "out of all proportion"),
+        ('["1 m"', f"[1{400 * '0'}", "nodes.tip.at[0]", "out of all proportion"),
         ('["1 m"', '["1 kg"', "nodes.tip.at[0]", "does not fit"),
         ('["1 m"', '["0 m"', "members.beam", "same point"),
         ("rectangle 50x100 mm", "rectangle 50x-100 mm", "members.beam.section", "not greater than zero"),

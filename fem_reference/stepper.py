@@ -31,7 +31,9 @@ from fem_reference.paths import NotConverged, State
 _TOLERANCE = 1e-16
 #: … and at which a late one is: where a short element yields throughout, rounding of its forces works as much.
 _LATE_TOLERANCE, _LATE = 1e-12, 8
-_MOST_ITERATIONS, _MOST_CUTS = 30, 8
+_MOST_ITERATIONS = 30
+#: Of a Newton step: where sections yield throughout, one may be ten thousand times too long.
+_MOST_CUTS = 20
 _MOST_PIECES = 256
 #: Share of h² K in the mass matrix that is inverted for a start: degrees of freedom without mass follow statically.
 _REGULAR = 1e-9

@@ -106,8 +106,8 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     collision_slop: Length = si(1e-3)
     largest_travel: Length | None = None
     rule: Literal["lobatto", "equal", "radau"] = "lobatto"
-    joints: Annotated[int, msgspec.Meta(ge=2)] = 5
+    joints: Annotated[int, msgspec.Meta(ge=2, le=1000)] = 5
     joint_damping: Duration = si(0.0)
     law: Literal["rigid-plastic", "elastic-plastic", "interaction", "fibre"] = "elastic-plastic"
-    fibres: Annotated[int, msgspec.Meta(ge=4)] = 8
+    fibres: Annotated[int, msgspec.Meta(ge=4, le=1000)] = 8
     hinge_length: Length | None = None

@@ -33,6 +33,7 @@ def test_written_out_scene_is_the_same(tmp_path: Path) -> None:
         ('["1 m"', '["1e200 m"', "nodes.tip.at[0]", "out of all proportion"),
         ('["1 m"', '["1e-200 m"', "nodes.tip.at[0]", "out of all proportion"),
         ('["1 m"', f"[1{400 * '0'}", "nodes.tip.at[0]", "out of all proportion"),
+        ("[push]", "[simulation]\njoints = 1000000\n[push]", "simulation.joints", "<= 1000"),
         ('["1 m"', '["1 kg"', "nodes.tip.at[0]", "does not fit"),
         ('["1 m"', '["0 m"', "members.beam", "same point"),
         ("rectangle 50x100 mm", "rectangle 50x-100 mm", "members.beam.section", "not greater than zero"),

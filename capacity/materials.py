@@ -144,11 +144,6 @@ def parse_material(text: str, place: str = "material", thickness: float | None =
     return checked(Material(name=grade if grade and not items else text.strip(), **fields), place)
 
 
-def grade_names() -> list[str]:
-    """Every grade that `parse_material` knows."""
-    return list(_grades())
-
-
 def _yield_stress(grade: str, steps: list[list[float]], thickness: float | None, place: str) -> float:
     if thickness is None:
         return steps[0][1]

@@ -36,8 +36,12 @@ def frame_text(
     return "\n".join([*lines, push, extra])
 
 
+def push_towards(node: str, direction: Sequence[int], distance: float) -> str:
+    return f'[push]\nnode = "{node}"\ndirection = {list(direction)}\ndistance = {distance!r}'
+
+
 def push_down(node: str, distance: float) -> str:
-    return f'[push]\nnode = "{node}"\ndirection = [0, -1]\ndistance = {distance!r}'
+    return push_towards(node, (0, -1), distance)
 
 
 def down(node: str) -> str:
@@ -76,7 +80,7 @@ def two_spans(first: float, second: float, even: bool, distance: float) -> Scene
     return frame_scene(nodes, members, push_down("C", distance), loads)
 
 
-def portal(h: float, span: float, ratio: float, node: str, distance: float, kinematics: str = "small") -> Scene:
+def portal_text(h: float, span: float, ratio: float, push: str, kinematics: str = "small") -> str:
     """C2-portal-*: fixed bases A and E, knees B and D, beam centre C; V down at C and H = ratio V at B."""
     nodes = {
         "A": (0.0, 0.0, "clamped"),
@@ -87,9 +91,13 @@ def portal(h: float, span: float, ratio: float, node: str, distance: float, kine
     }
     members = [("A", "B"), ("B", "C"), ("C", "D"), ("E", "D")]
     loads = [down("C"), f'node = "B"\nforce = [{ratio!r}, 0.0]']
-    direction = "[0, -1]" if node == "C" else "[1, 0]"
-    push = f'[push]\nnode = "{node}"\ndirection = {direction}\ndistance = {distance!r}'
-    return frame_scene(nodes, members, push, loads, kinematics=kinematics)
+    return frame_text(nodes, members, push, loads, kinematics=kinematics)
+
+
+def portal(h: float, span: float, ratio: float, node: str, distance: float, kinematics: str = "small") -> Scene:
+    """The scene of `portal_text`, C pushed down or another node to the right."""
+    push = push_towards(node, (0, -1) if node == "C" else (1, 0), distance)
+    return parse_scene(portal_text(h, span, ratio, push, kinematics), "test")
 
 
 def compressed_cantilever(n: float, distance: float, kinematics: str = "small") -> Scene:

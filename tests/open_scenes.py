@@ -3,12 +3,14 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from frames import IPE300, down, frame_text, push_down, spread
+from frames import IPE300, down, frame_text, portal_text, push_down, push_towards, spread
 
 RECTANGLE = "rectangle 50x100 mm"
 TUBE = "CHS 168.3x8 mm"
 #: The elastica: a strip that does not yield, so slender that extension counts for some 1e-4.
 STRIP, STRONG = "rectangle 4x5 mm", "fy=1e6 MPa, E=210 GPa, rho=7850 kg/m^3"
+#: How far all the portals are pushed [m].
+_WAY = 0.2
 _CANTILEVER = [("A", "B")]
 _TWO_HALVES = [("A", "C"), ("C", "B")]
 
@@ -58,25 +60,6 @@ def cantilever(length: float, push: str, loads: Sequence[str] = (), **options: s
     return frame_text({"A": (0.0, 0.0, "clamped"), "B": (length, 0.0, "free")}, _CANTILEVER, push, loads, **options)
 
 
-def push_towards(node: str, direction: Sequence[int]) -> str:
-    """0.2 m, as all the portals are pushed."""
-    return f'[push]\nnode = "{node}"\ndirection = {list(direction)}\ndistance = 0.2'
-
-
-def portal(h: float, span: float, ratio: float, push: str, kinematics: str = "small") -> str:
-    """Fixed bases A and E, knees B and D, beam centre C; V down at C and H = ratio V at B."""
-    nodes = {
-        "A": (0.0, 0.0, "clamped"),
-        "B": (0.0, h, "free"),
-        "C": (span / 2, h, "free"),
-        "D": (span, h, "free"),
-        "E": (span, 0.0, "clamped"),
-    }
-    members = [("A", "B"), ("B", "C"), ("C", "D"), ("E", "D")]
-    loads = [down("C"), f'node = "B"\nforce = [{ratio!r}, 0.0]']
-    return frame_text(nodes, members, push, loads, kinematics=kinematics)
-
-
 def _beams(cases: Mapping[str, Any]) -> dict[str, str]:
     outputs = cases["C2-ss-centre"]["outputs"]
     texts = {
@@ -118,11 +101,11 @@ def _portals(cases: Mapping[str, Any]) -> dict[str, str]:
     for row in cases["C2-portal-table"]["outputs"]["table"]:
         # Pushed where its mechanism moves.
         sideways = row["mechanism"] != "beam"
-        push = push_towards("B", [1, 0]) if sideways else push_towards("C", [0, -1])
+        push = push_towards("B", (1, 0), _WAY) if sideways else push_down("C", _WAY)
         name = f"C2-portal-table-L{row['L']:g}-HV{row['H_over_V']:g}"
-        texts[name] = portal(row["h"], row["L"], row["H_over_V"], push)
+        texts[name] = portal_text(row["h"], row["L"], row["H_over_V"], push)
     for case, direction, node in (("C2-portal-HV0.2", [0, -1], "C"), ("C2-portal-HV2.0", [1, 0], "B")):
         for kinematics in ("small", "p-delta", "large"):
-            push = push_towards(node, direction)
-            texts[f"{case}-{kinematics}"] = portal(4.0, 6.0, float(case[-3:]), push, kinematics)
+            push = push_towards(node, direction, _WAY)
+            texts[f"{case}-{kinematics}"] = portal_text(4.0, 6.0, float(case[-3:]), push, kinematics)
     return texts

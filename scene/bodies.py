@@ -126,17 +126,21 @@ class Body(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Ground(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A line that nothing passes.
+    """Solid ground under a line.
 
     Attributes
     ----------
     points : tuple of (Length, Length)
-        Its corners, one after the other [m].
+        Corners of the line, one after the other [m]. The ground is below a line that is drawn to the right or to the
+        left as a whole; one that ends above where it began, or in that point, has it on the right of its way.
+    thickness : Length
+        Of the ground below the line, less where it would come out elsewhere [m].
     friction, restitution : float
         Of its surface. A pair of surfaces has the product of both.
     """
 
     points: tuple[Point, ...]
+    thickness: Length = si(1.0)
     friction: Coefficient = 0.5
     restitution: Coefficient = 0.0
 

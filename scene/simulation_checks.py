@@ -9,7 +9,7 @@ from collections.abc import Collection
 from typing import get_args
 
 from capacity import InputError
-from scene.bodies import GROUND, Body, Box, Circle, Joint, Polygon, Shape
+from scene.bodies import GROUND, Body, Box, Circle, Ground, Joint, Polygon, Shape
 from scene.model import Scene
 from scene.programme import JointQuantity, Measure, NodeQuantity, Simulation
 from scene.vehicles import Vehicle
@@ -38,8 +38,7 @@ def check_simulation(scene: Scene) -> None:
     for name, vehicle in scene.vehicles.items():
         _check_vehicle(vehicle, f"vehicles.{name}")
     for i, ground in enumerate(scene.grounds):
-        if len(ground.points) < 2:
-            raise InputError(f"grounds[{i}].points", "a line has at least two points", "add one")
+        _check_ground(ground, f"grounds[{i}]")
     for name, member in scene.members.items():
         for key in ("break_elongation", "break_slip", "break_rotation"):
             _positive(getattr(member, key), f"members.{name}.{key}")
@@ -74,6 +73,22 @@ def _check_programme(scene: Scene, simulation: Simulation) -> None:
     _positive(simulation.duration, "simulation.duration", '"5 s"')
     if not (scene.members or scene.bodies or scene.vehicles):
         raise InputError("simulation", "nothing moves in the scene", "add [members.NAME], [bodies.NAME] or a vehicle")
+
+
+def _check_ground(ground: Ground, place: str) -> None:
+    _positive(ground.thickness, f"{place}.thickness", '"1 m"')
+    if len(ground.points) < 2:
+        raise InputError(f"{place}.points", "a line has at least two points", "add one")
+    for k, (a, b) in enumerate(itertools.pairwise(ground.points), 1):
+        if a == b:
+            raise InputError(f"{place}.points[{k}]", "it repeats the point before", "take it out")
+    for k, (a, b, c) in enumerate(zip(ground.points, ground.points[1:], ground.points[2:], strict=False), 1):
+        (ux, uy), (vx, vy) = (b[0] - a[0], b[1] - a[1]), (c[0] - b[0], c[1] - b[1])
+        if ux * vy == uy * vx and ux * vx + uy * vy < 0.0:
+            fault = "the line turns back on itself there"
+            raise InputError(
+                f"{place}.points[{k}]", fault, "give a wall two sides, or make it a body with fixed = true"
+            )
 
 
 def _check_body(body: Body, place: str) -> None:

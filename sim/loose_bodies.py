@@ -1,4 +1,4 @@
-"""A scene's loose bodies and ground as pymunk bodies and shapes."""
+"""A scene's loose bodies as pymunk bodies and shapes."""
 
 from __future__ import annotations
 
@@ -16,15 +16,6 @@ _groups = itertools.count(1)
 def new_group() -> int:
     """A number for bodies that pass through each other."""
     return next(_groups)
-
-
-def add_grounds(scene: Scene, space: pymunk.Space) -> None:
-    """The ground lines of ``scene``, on the space's static body."""
-    for ground in scene.grounds:
-        for a, b in itertools.pairwise(ground.points):
-            segment = pymunk.Segment(space.static_body, a, b, 0.0)
-            segment.friction, segment.elasticity = ground.friction, ground.restitution
-            space.add(segment)
 
 
 def add_bodies(scene: Scene, space: pymunk.Space) -> dict[str, pymunk.Body]:

@@ -12,10 +12,11 @@ from scene import Member, Scene, Simulation, is_supported
 from sim.contact_watch import ContactWatch, is_touching
 from sim.direct_joints import add_joints
 from sim.first_touch import first_touches, hold_back
+from sim.ground import add_grounds
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint
 from sim.limits import Limits
 from sim.load_programme import LoadProgramme
-from sim.loose_bodies import add_bodies, add_grounds
+from sim.loose_bodies import add_bodies
 from sim.measures import Watch
 from sim.members import Assembly, assemble
 from sim.model import Model

@@ -1,0 +1,114 @@
+"""The ground is solid under its line, at its corners, too; what falls on it stays on it."""
+
+import itertools
+import math
+
+import numpy as np
+import pymunk
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scene import Ground, builtin_names, load_scene
+from sim.ground import blocks
+from sim.world import World
+
+LINES = st.lists(st.tuples(st.floats(0.05, 4.0), st.floats(-3.0, 3.0)), min_size=2, max_size=8)
+
+
+def below(points: list[tuple[float, float]]) -> shapely.Polygon:
+    """All that is under a line which is drawn from left to right, and goes on straight at both ends."""
+    ends = [points[1], points[0]], points[-2:]
+    first, last = ((b[0] + 50.0 * (b[0] - a[0]), b[1] + 50.0 * (b[1] - a[1])) for a, b in ends)
+    deep = min(y for _, y in (first, *points, last)) - 20.0
+    return shapely.Polygon([first, *points, last, (last[0], deep), (first[0], deep)])
+
+
+@given(LINES)
+def test_blocks_fill_the_ground_under_their_line_and_nothing_else(steps: list[tuple[float, float]]) -> None:
+    """Down to the thickness, or to half of what there is: a point a hair under the line is in a block."""
+    points = [(x, y) for x, (_, y) in zip(np.cumsum([dx for dx, _ in steps]).tolist(), steps, strict=True)]
+    found = [shapely.Polygon(corners) for corners in blocks(Ground(tuple(points), thickness=1.0))]
+    solid = below(points).buffer(1e-9)
+    for (a, b), block in zip(itertools.pairwise(points), found, strict=True):
+        assert block.area > 0.0
+        assert shapely.difference(block, solid).area < 1e-6
+        assert shapely.distance(shapely.LineString([a, b]), block.boundary) < 1e-12
+        middle = shapely.Point(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]) - 1e-5)
+        assert block.distance(middle) < 1e-6
+    for one, other in itertools.combinations(found, 2):
+        assert shapely.intersection(one, other).area < 0.5 * min(one.area, other.area)
+
+
+def test_a_wall_is_as_thick_as_it_is_drawn() -> None:
+    wall = [(0.0, 0.0), (2.0, 0.0), (2.0, 3.0), (2.3, 3.0), (2.3, 0.0), (5.0, 0.0)]
+    drawn = below([(x + 1e-9 * i, y) for i, (x, y) in enumerate(wall)]).buffer(1e-6)
+    for corners in blocks(Ground(tuple(wall))):
+        assert shapely.difference(shapely.Polygon(corners), drawn).area < 1e-6
+
+
+def test_a_line_drawn_to_the_left_has_its_ground_below_it_too() -> None:
+    line = ((0.0, 1.0), (2.0, 1.5), (5.0, 0.0))
+    assert blocks(Ground(line)) == blocks(Ground(line[::-1]))
+
+
+def test_a_pit_is_solid_all_round() -> None:
+    """Down its left wall, along its floor and up again: what is outside of it is ground."""
+    pit = ((-1.0, 2.0), (-1.0, 0.0), (1.0, 0.0), (1.0, 2.0))
+    left, floor, right = (shapely.Polygon(corners).bounds for corners in blocks(Ground(pit, thickness=0.5)))
+    assert left == pytest.approx((-1.5, 0.0, -1.0, 2.0))
+    assert floor == pytest.approx((-1.0, -0.5, 1.0, 0.0))
+    assert right == pytest.approx((1.0, 0.0, 1.5, 2.0))
+
+
+def surface(points: np.ndarray, x: float, beside: float) -> float:
+    """Height of the ground at ``x``, the lower one ``beside`` a wall; nothing beyond the line's ends [m]."""
+    if not points[0, 0] < x < points[-1, 0]:
+        return -math.inf
+    return float(np.interp([x - beside, x + beside], points[:, 0], points[:, 1]).min())
+
+
+def lowest(body: pymunk.Body) -> list[tuple[float, float]]:
+    """Corners of a body, and lowest points of its circles."""
+    corners = []
+    for shape in body.shapes:
+        if isinstance(shape, pymunk.Circle):
+            corners.append(body.local_to_world(shape.offset) - (0.0, shape.radius))
+        else:
+            assert isinstance(shape, pymunk.Poly)
+            corners += map(body.local_to_world, shape.get_vertices())
+    return [(x, y) for x, y in corners]
+
+
+@pytest.mark.parametrize("name", [name for name in builtin_names() if load_scene(name).grounds])
+def test_nothing_falls_through_the_ground_at_60_hz(name: str) -> None:
+    """No body's middle is under it, but for half of a step's way; in the end no corner is, but of what stands in it."""
+    world = World(load_scene(name))
+    points, slop = np.array(world.scene.grounds[0].points, dtype=float), world.space.collision_slop
+    while not world.finished:
+        world.step()
+        for body in world.space.bodies:
+            x, y = body.local_to_world(body.center_of_gravity)
+            assert y > surface(points, x, slop) - 0.5 * body.velocity.length * world.dt - slop
+    feet = {
+        body for joint in world.labels for body in (joint.a, joint.b) if world.space.static_body in (joint.a, joint.b)
+    }
+    for body in set(world.space.bodies) - feet:
+        for x, y in lowest(body):
+            assert y > surface(points, x, 4.0 * slop) - 2.0 * slop
+
+
+@pytest.mark.parametrize("speed", [20.0, 50.0])
+def test_a_fast_body_stops_on_ground_twice_as_thick_as_its_way_in_a_step(speed: float) -> None:
+    """A plate of 10 mm, nearer to the surface than to the underside wherever it is found."""
+    space = pymunk.Space()
+    space.collision_slop = 1e-3
+    for corners in blocks(Ground(((-9.0, 0.0), (9.0, 0.0)), thickness=2.0 * speed / 60.0 + 0.02)):
+        space.add(pymunk.Poly(space.static_body, corners))
+    plate = pymunk.Body(1.0, 0.1)
+    plate.position, plate.velocity = (0.0, 2.0), (0.0, -speed)
+    space.add(plate, pymunk.Poly.create_box(plate, (1.0, 0.01)))
+    for _ in range(240):
+        space.step(1.0 / 60.0)
+    assert plate.position.y == pytest.approx(0.005, abs=0.01)

@@ -97,7 +97,7 @@ class Structure:
         mass = [(b.mass, b.mass, b.moment) for b in self.bodies if b.body_type == pymunk.Body.DYNAMIC]
         moving = last[: len(mass)]
         ledger[at.LEDGER_KINETIC] = 0.5 * np.sum(np.array(mass) * moving**2, where=moving != 0.0)
-        ledger[at.LEDGER_ELASTIC] = self.elastic_energy.sum()
+        ledger[at.LEDGER_ELASTIC] = 0.5 * self._result[:, [at.RESULT_BEFORE, at.RESULT_ELASTIC]].sum()
         ledger[at.LEDGER_EXTERNAL] = ledger[at.LEDGER_KINETIC] + ledger[at.LEDGER_ELASTIC]
 
     def _adopt(self, index: int) -> None:
@@ -279,7 +279,7 @@ class Structure:
     @property
     def energy(self) -> Energy:
         """Ledger of the structure since it was built [J]."""
-        return Energy(*self._tables[at.LEDGER].tolist())
+        return Energy(*self._tables[at.LEDGER][: at.LEDGER_TO_COME].tolist())
 
     @property
     def residual(self) -> float:

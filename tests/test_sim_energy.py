@@ -31,21 +31,18 @@ def kinetic(bodies: list[pymunk.Body]) -> float:
 
 
 def check(case: Case) -> Energy:
-    """Ledger of a case after its steps, closed and without energy from nowhere in each of them.
-
-    A structure that swings up is ahead of its weight's work by half a step.
-    """
-    given = 0.0
+    """Ledger of a case after its steps, closed and without energy from nowhere in each of them."""
+    done = 0.0
     for step in range(case.steps):
         case.act(step)
         case.space.step(case.dt)
-        now = case.structure.energy
+        now, structure = case.structure.energy, case.structure
         assert abs(now.gap) <= 1e-12 * largest(now)
-        assert now.numerical >= -0.5 * abs(now.external - given) - 1e-12 * largest(now)
-        given = now.external
-        assert now.kinetic == pytest.approx(kinetic(case.bodies[: len(case.structure.bodies)]), rel=1e-12, abs=1e-20)
-        assert now.elastic == pytest.approx(case.structure.elastic_energy.sum(), rel=1e-12, abs=1e-20)
-        assert now.plastic == pytest.approx(case.structure.dissipated.sum(), rel=1e-12, abs=1e-20)
+        assert now.numerical >= -1e-12 * largest(now)
+        assert now.kinetic == pytest.approx(kinetic(case.bodies[: len(structure.bodies)]), rel=1e-12, abs=1e-20)
+        # The ledger stands in the middle of a move, the joints at its end.
+        assert now.plastic == pytest.approx(0.5 * (done + structure.dissipated.sum()), rel=1e-9, abs=1e-20)
+        done = structure.dissipated.sum()
     return case.structure.energy
 
 

@@ -20,7 +20,7 @@ from numba import njit
 
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.energy import weight_of_end, work_of_shifts, work_on_held
+from sim.kernels.energy import work_of_shifts, work_on_held
 from sim.kernels.kinematics import rates
 from sim.kernels.layout import (
     BETA,
@@ -31,7 +31,9 @@ from sim.kernels.layout import (
     LEDGER_EXTERNAL,
     LEDGER_NUMERICAL,
     LEDGER_PLASTIC,
+    LEDGER_TO_COME,
     LEDGER_VISCOUS,
+    RESULT_BEFORE,
     RESULT_DISSIPATED,
     RESULT_ELASTIC,
     RESULT_FORCE,
@@ -117,20 +119,22 @@ def commit(t):  # type: ignore[no-untyped-def]
     last = views.per_body(t, at.LAST_VELOCITY)
     scale, result, settings = views.scale(t), views.result(t), views.settings(t)
     ledger, moving = views.ledger(t), t[at.MOVING]
-    h, reach, w, whole = settings[STEP], reach_of(t), weight_of_end(settings), flow_share(t)
+    h, reach, whole = settings[STEP], reach_of(t), flow_share(t)
     q, out = np.empty(3), np.empty(COMMIT_WORDS)
     broke, flowing = 0, 0.0
-    external, elastic, plastic, contact, viscous, numerical = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    external, elastic, contact, viscous, numerical = 0.0, 0.0, 0.0, 0.0, 0.0
+    plastic, to_come = ledger[LEDGER_TO_COME], 0.0
     for k in range(t[at.JOINTS]):
         r = result[k]
         if active[k] == 0:
             # Let go by hand: what it stored goes with it.
-            external -= r[RESULT_ELASTIC]
+            external -= 0.5 * (r[RESULT_BEFORE] + r[RESULT_ELASTIC])
             r[0:RESULT_PLASTIC] = 0.0
-            r[RESULT_ELASTIC] = 0.0
+            r[RESULT_BEFORE], r[RESULT_ELASTIC] = 0.0, 0.0
             continue
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         x, y, z = rates(jacobian, k, velocity, ia, velocity, ib)
+        x0, y0, z0 = rates(jacobian, k, start, ia, start, ib)
         d, c = deformation[k], damping[k]
         q[0], q[1], q[2] = d[0] + reach * x, d[1] + reach * y, d[2] + reach * z
         for i in range(3):
@@ -147,46 +151,53 @@ def commit(t):  # type: ignore[no-untyped-def]
             for i in range(1, COMMIT_WORDS):
                 out[i] *= whole
         share, room = used(limits[k], r[RESULT_PLASTIC:], out[2:])
-        damped = h * (c[0] * x * x + c[1] * y * y + c[2] * z * z)
-        stored, before, lost = out[0], r[RESULT_ELASTIC], scale[k] * out[1]
+        at_end, lost, second_half = out[0], scale[k] * out[1], 0.5 * scale[k] * out[1]
         if settings[BETA] != 0.0:
-            x0, y0, z0 = rates(jacobian, k, last, ia, last, ib)
-            stored += half_a_step_on(t, k, x0, y0, z0, x, y, z, (1.0 - 1.0 / whole) * out[2:])
-            x0, y0, z0 = rates(jacobian, k, start, ia, start, ib)
-            x, y, z = x0 + w * (x - x0), y0 + w * (y - y0), z0 + w * (z - z0)
+            xl, yl, zl = rates(jacobian, k, last, ia, last, ib)
+            at_end += half_a_step_on(t, k, xl, yl, zl, x, y, z, (1.0 - 1.0 / whole) * out[2:])
+            second_half = 0.0
+        x, y, z = 0.5 * (x0 + x), 0.5 * (y0 + y), 0.5 * (z0 + z)
+        damped = h * (c[0] * x * x + c[1] * y * y + c[2] * z * z)
+        given = 0.5 * (r[RESULT_BEFORE] + r[RESULT_ELASTIC]) - damped
+        given -= impulse[k, 0] * x + impulse[k, 1] * y + impulse[k, 2] * z
+        if ia >= moving or ib >= moving:
+            external -= work_on_held(t, k, velocity, start)
+        if t[at.SHIFTED] == 1:
+            by_contacts, by_hand = work_of_shifts(t, k, 0), work_of_shifts(t, k, 3)
+            contact -= by_contacts
+            external += by_hand
+            given += by_contacts + by_hand
+            r[RESULT_ELASTIC] += by_contacts + by_hand
+        at_start = r[RESULT_ELASTIC] if settings[BETA] == 0.0 else at_end
         r[RESULT_USED] = min(share, 1.0)
         r[RESULT_PLASTIC + (0 if out[2] > 0.0 else 1)] += abs(out[2])
         r[RESULT_PLASTIC + 2] += abs(out[3])
         r[RESULT_PLASTIC + 3] += abs(out[4])
         if scale[k] < 1.0 or room < 1.0:
             # What was stored elastically, and what the joint still took of the step's share, is lost with it.
-            lost += before + scale[k] * (stored - before)
-            stored = 0.0
+            lost += r[RESULT_ELASTIC] + scale[k] * (at_end - r[RESULT_ELASTIC])
+            at_start, at_end, second_half = 0.0, 0.0, 0.0
             r[RESULT_USED] = 1.0
             active[k] = 0
             broke += 1
-        r[RESULT_ELASTIC] = stored
+        stored = 0.5 * (at_start + at_end)
+        r[RESULT_BEFORE], r[RESULT_ELASTIC] = at_start, at_end
         r[RESULT_DISSIPATED] += lost
         r[RESULT_VISCOUS] += damped
         flowing += abs(out[2]) + abs(out[3]) + abs(out[4])
         elastic += stored
-        plastic += lost
+        plastic += lost - second_half
+        to_come += second_half
         viscous += damped
-        numerical -= impulse[k, 0] * x + impulse[k, 1] * y + impulse[k, 2] * z + (stored - before) + lost + damped
-        if ia >= moving or ib >= moving:
-            external -= work_on_held(t, k, velocity, start, w)
-        if t[at.SHIFTED] == 1:
-            by_contacts, by_hand = work_of_shifts(t, k, 0), work_of_shifts(t, k, 3)
-            contact -= by_contacts
-            external += by_hand
-            numerical += by_contacts + by_hand
+        numerical += given - stored
     t[at.FLOWING] = 1 if flowing > 0.0 else 0
     ledger[LEDGER_EXTERNAL] += external
     ledger[LEDGER_ELASTIC] = elastic
     ledger[LEDGER_PLASTIC] += plastic
+    ledger[LEDGER_TO_COME] = to_come
     ledger[LEDGER_CONTACT] += contact
     ledger[LEDGER_VISCOUS] += viscous
-    ledger[LEDGER_NUMERICAL] += numerical
+    ledger[LEDGER_NUMERICAL] += numerical - plastic
     return broke
 
 

@@ -1,12 +1,16 @@
-"""No energy from nowhere.
+"""No energy from nowhere: what closes the ledger's numerical dissipation from below in implicit Euler.
 
-Where bodies turn by a radian or more within a step, the directions of its start say little about its end, and the
-ledger of implicit Euler may come to a numerical dissipation below zero. What is missing is then taken out of the motion
-of the bodies relative to each other: velocities go towards those of the structure moving as a rigid body, or towards
-rest if it is held, which leaves both momenta of a free structure as they are.
+Directions of forces are those of a step's start, and a joint's force may turn round from one step to the next while the
+move between was made against the old one. The numerical dissipation shows what that creates: where bodies turn by an
+angle φ in a step under compression, a share of φ² of the energy, and where a yielding joint is thrown back, up to the
+plastic work of its last move. Three things keep it from being negative, one after the other:
 
-The ledger books work over the way that Chipmunk moves the bodies next, half a step after their velocities. Where a
-structure swings up against its weight, it runs ahead by half a step's work, and that much is let pass.
+- a contact's impulse that also balances joints within the step has lost no more in an impact than there was;
+- what the step has created is taken out of the motion of the bodies relative to each other again: velocities go towards
+  those of the structure moving as a rigid body, or towards rest if it is held, which leaves both momenta of a free
+  structure as they are;
+- where there is too little motion for that, as after a step that did not converge, plastic work is not booked until
+  dissipation has caught up with it.
 """
 
 import math
@@ -17,7 +21,15 @@ from sim.chipmunk import BODY_WORDS, SPIN, VX, X
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.inertia import mass_of, moment_of
-from sim.kernels.layout import BETA, LEDGER_EXTERNAL, LEDGER_KINETIC, LEDGER_NUMERICAL
+from sim.kernels.layout import (
+    BETA,
+    LEDGER_CONTACT,
+    LEDGER_EXTERNAL,
+    LEDGER_KINETIC,
+    LEDGER_NUMERICAL,
+    LEDGER_PLASTIC,
+    LEDGER_TO_COME,
+)
 from sim.memory import floats
 
 # Share of the ledger's largest entry that is rounding.
@@ -25,13 +37,30 @@ _ROUNDING = 1e-13
 
 
 @njit(error_model="numpy")
-def take_out_what_was_created(t, before):  # type: ignore[no-untyped-def]
-    """Close the ledger's numerical dissipation from below; ``before`` is the external work before this step [J]."""
+def close_from_below(t, contact, plastic, numerical):  # type: ignore[no-untyped-def]
+    """Do so; the ledger's entries as they were before this step [J]."""
     ledger = views.ledger(t)
+    if views.settings(t)[BETA] != 0.0 or ledger[LEDGER_NUMERICAL] >= 0.0:
+        return
+    move_between(ledger, LEDGER_CONTACT, ledger[LEDGER_CONTACT] - contact)
     largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
-    allowed = 0.5 * abs(ledger[LEDGER_EXTERNAL] - before) + _ROUNDING * largest
-    missing = -allowed - ledger[LEDGER_NUMERICAL]
-    if missing <= 0.0 or views.settings(t)[BETA] != 0.0:
+    take_out(t, min(-_ROUNDING * largest, numerical) - ledger[LEDGER_NUMERICAL])
+    ledger[LEDGER_TO_COME] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC] - plastic)
+
+
+@njit(error_model="numpy")
+def move_between(ledger, entry, most):  # type: ignore[no-untyped-def]
+    """Move what numerical dissipation lacks from an ``entry``, ``most`` at the most [J]; returns how much."""
+    moved = max(min(-ledger[LEDGER_NUMERICAL], most), 0.0)
+    ledger[entry] -= moved
+    ledger[LEDGER_NUMERICAL] += moved
+    return moved
+
+
+@njit(error_model="numpy")
+def take_out(t, energy):  # type: ignore[no-untyped-def]
+    """Take ``energy`` [J] out of the relative motion of a structure's bodies, as far as there is any."""
+    if energy <= 0.0:
         return
     body_at, moving = views.body_at(t), t[at.MOVING]
     mass, x, y, vx, vy, turn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -54,7 +83,7 @@ def take_out_what_was_created(t, before):  # type: ignore[no-untyped-def]
         b = floats(body_at[i], BODY_WORDS)
         u, v, w = b[VX] - vx + turn * (b[X + 1] - y), b[VX + 1] - vy - turn * (b[X] - x), b[SPIN] - turn
         inner += 0.5 * (mass_of(b) * (u * u + v * v) + moment_of(b) * w * w)
-    taken = min(missing, inner)
+    taken = min(energy, inner)
     if taken <= 0.0:
         return
     less = 1.0 - math.sqrt(1.0 - taken / inner)
@@ -63,5 +92,6 @@ def take_out_what_was_created(t, before):  # type: ignore[no-untyped-def]
         b[VX] -= less * (b[VX] - vx + turn * (b[X + 1] - y))
         b[VX + 1] -= less * (b[VX + 1] - vy - turn * (b[X] - x))
         b[SPIN] -= less * (b[SPIN] - turn)
+    ledger = views.ledger(t)
     ledger[LEDGER_KINETIC] -= taken
     ledger[LEDGER_NUMERICAL] += taken

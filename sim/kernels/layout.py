@@ -63,7 +63,7 @@ _FIRST_ADDRESS = 25
     DIAGONAL,  # (moving, 9)
     LOWER_BLOCKS,  # (lower, 9)
     SCALED_BLOCKS,  # (lower, 9)
-    RESULT,  # (joints, 14)
+    RESULT,  # (joints, 15)
     BODY_KEYS,  # hash table from a body's address …
     BODY_VALUES,  # … to its index
     PLACES,  # (room, 8) int64: contacts, see `contacts`
@@ -78,10 +78,10 @@ STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL, STEP_RATIO, ROUNDING = 0, 1, 2, 3, 
 SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 7, 8, 9
 SETTINGS_WORDS = 10
 
-# Ledger [J], see `energy`: running totals, and the present kinetic and elastic energy.
+# Ledger [J], see `energy`: running totals, the present kinetic and elastic energy, and plastic work to be booked yet.
 LEDGER_EXTERNAL, LEDGER_KINETIC, LEDGER_ELASTIC, LEDGER_PLASTIC = 0, 1, 2, 3
-LEDGER_CONTACT, LEDGER_VISCOUS, LEDGER_NUMERICAL = 4, 5, 6
-LEDGER_WORDS = 7
+LEDGER_CONTACT, LEDGER_VISCOUS, LEDGER_NUMERICAL, LEDGER_TO_COME = 4, 5, 6, 7
+LEDGER_WORDS = 8
 
 # Geometry of a joint: anchor on a and on b (from their centres of gravity, body coordinates), rest angle of the
 # joint's frame on a and on b, share α of b's rotation in the frame, cosine and sine of the two rest angles, extension
@@ -104,10 +104,12 @@ INERTIA_M, INERTIA_I, INVERSE_M, INVERSE_I = 0, 1, 2, 3
 WEIGHT_WORDS = 4
 
 # Result of a step: q*, force, plastic deformation summed without sign (elongation, shortening, slip, rotation),
-# elastic energy, plastic work so far, viscous work so far, share of the plastic capacity used.
+# elastic energy, plastic work so far, viscous work so far, share of the plastic capacity used, elastic energy
+# before the step.
 RESULT_Q, RESULT_FORCE, RESULT_PLASTIC = 0, 3, 6
 RESULT_ELASTIC, RESULT_DISSIPATED, RESULT_VISCOUS, RESULT_USED = 10, 11, 12, 13
-RESULT_WORDS = 14
+RESULT_BEFORE = 14
+RESULT_WORDS = 15
 
 # A contact in `places`: address of the cpContact, its hash; for each side the control table of the structure that the
 # body belongs to (0: none), its index there, and its address.

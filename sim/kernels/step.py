@@ -30,11 +30,12 @@ from sim.kernels.commit import commit, weaken
 from sim.kernels.complement import NOT_FINITE, gather_contacts, sum_up, touch
 from sim.kernels.contacts import collect
 from sim.kernels.energy import close
-from sim.kernels.guard import take_out_what_was_created
+from sim.kernels.guard import close_from_below
 from sim.kernels.inertia import give_back, mass_of, moment_of, weigh
 from sim.kernels.kinematics import leave_out, prepare
-from sim.kernels.layout import CACHED, INERTIA_I, LEDGER_EXTERNAL, WHERE
+from sim.kernels.layout import CACHED, INERTIA_I, LEDGER_CONTACT, LEDGER_NUMERICAL, LEDGER_PLASTIC, WHERE
 from sim.kernels.newton import iterate, restart
+from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
 from sim.memory import call_notice, floats
 
 _MOST_ROUNDS = 40
@@ -182,6 +183,12 @@ def solve(c):  # type: ignore[no-untyped-def]
             restart(t)
             member = t[at.NEXT]
     converged = settle(c, fresh, touching)
+    if touching and bounces(c):
+        for k in range(MOST_HALVINGS):
+            if head[at.FAULT] >= 0 or not creates_energy(c):
+                break
+            bounce_less(c, 0.5 if k < MOST_HALVINGS - 1 else 0.0)
+            converged = settle(c, False, True)
     member = c
     while member != 0:
         t = views.control(member)
@@ -301,10 +308,11 @@ def finish(c):  # type: ignore[no-untyped-def]
     shift = views.shift(t)
     if t[at.FAULT] < 0:
         take_in(t)
-        given = views.ledger(t)[LEDGER_EXTERNAL]
+        ledger = views.ledger(t)
+        contact, plastic, numerical = ledger[LEDGER_CONTACT], ledger[LEDGER_PLASTIC], ledger[LEDGER_NUMERICAL]
         t[at.BROKE] = commit(t)
         close(c, t)
-        take_out_what_was_created(t, given)
+        close_from_below(t, contact, plastic, numerical)
         load_velocities(t, views.per_body(t, at.LAST_VELOCITY))
         body_at, position = views.body_at(t), views.per_body(t, at.LAST_POSITION)
         for i in range(t[at.BODIES]):

@@ -22,10 +22,20 @@ _MOST_ADVANCES = 60
 
 @dataclass(frozen=True)
 class Touch:
-    """A body that would touch another ``time`` [s] into a step."""
+    """A body that would touch another ``time`` [s] into a step.
+
+    Attributes
+    ----------
+    body : pymunk.Body
+    time : float
+        [s]
+    closing : (float, float)
+        By how much its velocity brings it on into what it touches, which may be on its way, too [m/s].
+    """
 
     body: pymunk.Body
     time: float
+    closing: tuple[float, float]
 
 
 def first_touches(space: pymunk.Space, bodies: Iterable[pymunk.Body], dt: float) -> list[Touch]:
@@ -36,24 +46,28 @@ def first_touches(space: pymunk.Space, bodies: Iterable[pymunk.Body], dt: float)
     """
     touches = []
     for body in bodies:
-        times = [
-            time
+        found = [
+            touch
             for own in body.shapes
             for other in space.bb_query(_swept(own, dt), own.filter)
             if other.body is not body and other.body is not None and not _pass(body, other.body)
-            for time in (_first_touch(own, other, dt, space.collision_slop),)
-            if time is not None
+            for touch in (_first_touch(own, other, dt, space.collision_slop),)
+            if touch is not None
         ]
-        if times:
-            touches.append(Touch(body, min(times)))
+        if found:
+            touches.append(min(found, key=lambda touch: touch.time))
     return touches
 
 
 def hold_back(touch: Touch, dt: float) -> None:
-    """Put a body back along its way, so that the move of ``dt`` [s] ends where it touches."""
+    """Put a body back, so that the move of ``dt`` [s] ends where it touches.
+
+    From then on it goes with what it touches: a body that is put back by all of its way, behind another that moves on,
+    would have lost it by the end of the step, and strike it a second time.
+    """
     left = dt - touch.time
     body = touch.body
-    body.position -= body.velocity * left
+    body.position -= pymunk.Vec2d(*touch.closing) * left
     body.angle -= body.angular_velocity * left
 
 
@@ -86,7 +100,7 @@ def _reach(shape: pymunk.Shape) -> float:
     return max(end.get_distance(centre) for end in (shape.a, shape.b)) + shape.radius
 
 
-def _first_touch(own: pymunk.Shape, other: pymunk.Shape, dt: float, slop: float) -> float | None:
+def _first_touch(own: pymunk.Shape, other: pymunk.Shape, dt: float, slop: float) -> Touch | None:
     """When the two shapes first touch, in a move of ``dt``; a little later, so that Chipmunk sees it."""
     a, b = own.body, other.body
     assert a is not None
@@ -99,11 +113,28 @@ def _first_touch(own: pymunk.Shape, other: pymunk.Shape, dt: float, slop: float)
     for _ in range(_MOST_ADVANCES):
         distance = shapely.distance(_moved(own, time), _moved(other, time)) - _rounding(own) - _rounding(other)
         if distance <= 0.01 * slop:
-            return None if time == 0.0 else min(time + 0.5 * slop / approach, dt)
+            if distance <= 0.0 and time == 0.0:
+                return None
+            return Touch(a, min(time + 0.5 * slop / approach, dt), _closing(own, other, time))
         time += distance / approach
         if time >= dt:
             return None
-    return min(time, dt)
+    return Touch(a, min(time, dt), _closing(own, other, time))
+
+
+def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[float, float]:
+    """Velocity of the first shape's body towards the other's surface where they touch, in ``time``."""
+    a, b = own.body, other.body
+    assert a is not None
+    assert b is not None
+    here, there = shapely.get_coordinates(shapely.shortest_line(_moved(own, time), _moved(other, time)))
+    arm = pymunk.Vec2d(*there) - (b.local_to_world(b.center_of_gravity) + b.velocity * time)
+    velocity = a.velocity - b.velocity - b.angular_velocity * arm.perpendicular()
+    normal = pymunk.Vec2d(*(there - here)).normalized()
+    if normal == (0.0, 0.0):
+        return velocity.x, velocity.y
+    closing = max(0.0, velocity.dot(normal)) * normal
+    return closing.x, closing.y
 
 
 def _rounding(shape: pymunk.Shape) -> float:

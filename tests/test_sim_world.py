@@ -119,6 +119,30 @@ take = "largest"
     assert world.bodies["plate"].position.y == pytest.approx(5e-3, abs=1e-3)
 
 
+@pytest.mark.parametrize("ahead", [-20.0, 0.0, 45.0])
+def test_a_fast_body_ends_its_move_at_what_moves_too(ahead: float) -> None:
+    """At 50 m/s behind, before or against another: it neither goes into it nor loses it by the end of the step."""
+    pair = "".join(
+        f"""
+[bodies.{name}]
+at = ["{x} m", "5 m"]
+velocity = ["{speed} m/s", "0 m/s"]
+mass = "1 kg"
+shapes = [{{ kind = "circle", radius = "0.1 m" }}]
+{"continuous = true" if name == "fast" else ""}
+"""
+        for name, x, speed in (("fast", -0.31, 50.0), ("other", 0.0, ahead))
+    )
+    world = World(parse_scene(FALL + pair, "test"))
+    fast, other = world.bodies["fast"], world.bodies["other"]
+    while fast.velocity.x > 0.5 * (50.0 + ahead) + 1e-6:
+        gap = other.position.x - fast.position.x - 0.2
+        world.step()
+    assert gap > 0.0
+    assert other.position.x - fast.position.x - 0.2 == pytest.approx(0.0, abs=1e-3)
+    assert fast.velocity.x == pytest.approx(0.5 * (50.0 + ahead))
+
+
 def test_mass_centre_and_inertia_of_shapes() -> None:
     """A T of two rectangles, by Steiner's theorem."""
     text = (

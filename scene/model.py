@@ -11,7 +11,7 @@ from capacity import Capacity, InputError, Material, Section, capacity
 from scene.actions import Load, LoadKind, Motion, Push, unit_vector
 from scene.bodies import Body, Coefficient, Ground, Joint, Point
 from scene.plane import Plane
-from scene.programme import Measure, Simulation
+from scene.programme import JointCount, Measure, Simulation
 from scene.quantities import Acceleration, Angle, Length, Mass, RotationalStiffness, Speed, Stiffness, si
 from scene.vehicles import Vehicle
 
@@ -84,6 +84,8 @@ class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
         Likewise [rad].
     friction : float
         Of its surface, where something touches it in a simulation.
+    joints : int, optional
+        Points of the rule in a simulation, in place of the scene's `Simulation.joints`.
     """
 
     section: Section
@@ -93,6 +95,7 @@ class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     break_slip: Length | None = None
     break_rotation: Angle | None = None
     friction: Coefficient = 0.5
+    joints: JointCount | None = None
 
 
 class Member(Profile, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -26,6 +26,8 @@ JointQuantity = Literal[
 ]
 Quantity = Literal[BodyQuantity, JointQuantity]
 Take = Literal["last", "first", "largest", "smallest", "change", "time-of-largest", "laps"]
+#: Points of a rule in a member.
+JointCount = Annotated[int, msgspec.Meta(ge=2, le=1000)]
 Integration = Literal["average-acceleration", "implicit-euler"]
 
 
@@ -84,7 +86,7 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         Where the joints of a member go: ``"lobatto"`` points, ``"equal"`` pieces, or ``"radau"``, hinges of a chosen
         length at both ends.
     joints : int
-        Points of the rule in each member.
+        Points of the rule in each member that does not say otherwise.
     joint_damping : Duration
         Viscous damping of the members' joints over their stiffness [s]: a vibration at ω has the damping ratio
         ω joint_damping / 2.
@@ -106,7 +108,7 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     collision_slop: Length = si(1e-3)
     largest_travel: Length | None = None
     rule: Literal["lobatto", "equal", "radau"] = "lobatto"
-    joints: Annotated[int, msgspec.Meta(ge=2, le=1000)] = 5
+    joints: JointCount = 5
     joint_damping: Duration = si(0.0)
     law: Literal["rigid-plastic", "elastic-plastic", "interaction", "fibre"] = "elastic-plastic"
     fibres: Annotated[int, msgspec.Meta(ge=4, le=1000)] = 8

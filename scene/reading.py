@@ -4,6 +4,7 @@ import difflib
 import re
 import tomllib
 from importlib import resources
+from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any, get_args
 
@@ -18,9 +19,18 @@ from scene.quantities import Quantity
 
 
 def builtin_names() -> list[str]:
-    """Names of the scenes that come with the package, sorted."""
+    """Names of the scenes that come with the package: the principal ones, sorted, and then their variants."""
+    return list(_builtin_files())
+
+
+def _builtin_files() -> dict[str, Traversable]:
     folder = resources.files("scene").joinpath("builtin")
-    return sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
+    files = [*_toml_files(folder), *_toml_files(folder.joinpath("variants"))]
+    return {file.name.removesuffix(".toml"): file for file in files}
+
+
+def _toml_files(folder: Traversable) -> list[Traversable]:
+    return sorted((file for file in folder.iterdir() if file.name.endswith(".toml")), key=lambda file: file.name)
 
 
 def builtin_text(name: str) -> str:
@@ -31,13 +41,13 @@ def builtin_text(name: str) -> str:
     InputError
         When there is no such scene.
     """
-    names = builtin_names()
-    if name not in names:
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    files = _builtin_files()
+    if name not in files:
+        near = difflib.get_close_matches(name, files, n=1, cutoff=0.5)
         hint = f"did you mean {near[0]}? " if near else ""
-        cure = f"{hint}The built-in scenes are {', '.join(names)}; a file of your own ends in .toml"
+        cure = f"{hint}The built-in scenes are {', '.join(files)}; a file of your own ends in .toml"
         raise InputError("scene", f'there is no scene "{name}"', cure)
-    return resources.files("scene").joinpath(f"builtin/{name}.toml").read_text(encoding="utf-8")
+    return files[name].read_text(encoding="utf-8")
 
 
 def load_scene(name: str) -> Scene:

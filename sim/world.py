@@ -19,7 +19,7 @@ from sim.load_programme import LoadProgramme
 from sim.loose_bodies import add_bodies
 from sim.measures import Watch
 from sim.members import Assembly, assemble
-from sim.model import Model
+from sim.model import MemberModel, Model
 from sim.motion import set_going
 from sim.prescribed_push import PrescribedPush
 from sim.settling import settle
@@ -104,6 +104,7 @@ class World:
             damping=run.joint_damping,
             scheme=scheme,
             hinge_length=run.hinge_length,
+            members=_models(scene, run),
         )
         self._assembly = self._add_members(model)
         self._loads = None if self._assembly is None else LoadProgramme(scene, self._assembly)
@@ -254,6 +255,15 @@ def _scheme(scene: Scene, run: Simulation) -> tuple[float, float]:
     if (run.integration or by_default) == "implicit-euler":
         return IMPLICIT_EULER
     return AVERAGE_ACCELERATION[0], run.numerical_damping
+
+
+def _models(scene: Scene, run: Simulation) -> dict[str, MemberModel]:
+    """Of the members that say how many joints they have."""
+    return {
+        name: MemberModel(run.rule, member.joints, run.law, run.fibres, run.hinge_length)
+        for name, member in scene.members.items()
+        if member.joints is not None
+    }
 
 
 def _limits(member: Member) -> Limits:

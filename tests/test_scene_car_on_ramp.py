@@ -62,12 +62,18 @@ def test_jumps_at_60_hz_are_within_a_tenth_of_the_converged_ones() -> None:
     assert fine[2] == pytest.approx(on_the_ground, abs=1.0)
 
 
-def test_the_same_scene_gives_the_original_s_figures_with_the_original_s_joint() -> None:
-    """16.3, 53.6 and 7.3 %: within 2, 5 and 2 points."""
-    own, first, second = example.shares(1 / 1000, 2, original=True)
-    assert own == pytest.approx(16.3, abs=2.0)
-    assert first == pytest.approx(53.6, abs=5.0)
-    assert second - first == pytest.approx(7.3, abs=2.0)
+@pytest.mark.parametrize(
+    ("steps", "own", "first", "further"),
+    [(60, 13.4, 51.2, 5.9), (120, 14.6, 52.5, 6.7), (240, 15.6, 53.3, 7.4), (1000, 16.3, 53.6, 7.3)],
+)
+def test_the_original_s_joint_gives_the_original_s_figures(
+    steps: int, own: float, first: float, further: float
+) -> None:
+    """In the same scene, step by step as its code drifts; the paper says 13, 50 and 7 %."""
+    found = example.shares(1 / steps, 2, original=True)
+    assert found[0] == pytest.approx(own, abs=0.1)
+    assert found[1] == pytest.approx(first, abs=1.5)
+    assert found[2] - found[1] == pytest.approx(further, abs=2.5)
 
 
 def test_implicit_euler_drifts_with_the_step_and_average_acceleration_does_not() -> None:

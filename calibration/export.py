@@ -109,7 +109,7 @@ def joint_table(scene: Scene, model: Model, name: str = "") -> dict[str, Any]:
     world), where, in which direction, and by what law. An unlimited capacity is null.
     """
     assembly = assemble(scene, model, shapes=False)
-    names = {assembly.space.static_body: "ground"}
+    names = dict.fromkeys(assembly.grounds, "ground")
     counts: dict[str, int] = {}
     for piece in assembly.pieces:
         counts[piece.member] = counts.get(piece.member, 0) + 1
@@ -150,13 +150,20 @@ def _joint(joint: DuctileJoint, names: dict[pymunk.Body, str]) -> dict[str, Any]
         "a": names[joint.a],
         "b": names[joint.b],
         "at": list(joint.at),
-        "anchor_a": list(joint.a.world_to_local(joint.at)),
+        "anchor_a": list(_anchor_a(joint, names)),
         "anchor_b": list(joint.b.world_to_local(joint.at)),
         "direction": joint.direction,
         "turn": joint.turn,
         "elastic_stiffness": {"axial": tangent[0], "shear": tangent[3], "rotation": tangent[5]},
         "law": {"name": joint.law.name, **law},
     }
+
+
+def _anchor_a(joint: DuctileJoint, names: dict[pymunk.Body, str]) -> pymunk.Vec2d:
+    """In coordinates of the first body; of the ground, the world's, where a support that settles has gone."""
+    if names[joint.a] == "ground":
+        return joint.at + joint.a.position
+    return joint.a.world_to_local(joint.at)
 
 
 def _place(place: Any) -> dict[str, Any]:

@@ -25,7 +25,7 @@ import msgspec
 import numpy as np
 from scipy.optimize import least_squares
 
-from calibration.small_displacements import push_model
+from calibration.comparable_push import push_model
 from capacity import InputError, Material, StressStrain
 from fem_reference import PushAnswer, motion, push_over
 from scene import Scene

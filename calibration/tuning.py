@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import msgspec
 
+from calibration.comparable_push import push_model
 from calibration.errors import Findings, compare, find
 from calibration.fitting import Fit, LoadCase, fit, fitted
 from calibration.limits import what_limits
 from calibration.member_plans import MemberPlan, member_plans
 from calibration.planner import candidates, candidates_to_fit, cheaper, groups, relative_cost
-from calibration.small_displacements import push_model
 from calibration.trials import Failure, Trial
 from capacity import Capacity, InputError
 from fem_reference import NotConverged, PlanePush, PushAnswer, default_tolerance, natural_modes, push_over

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from capacity import Capacity, FacetSurface, Interaction
 from scene import Member, Scene
-from sim.laws import LAWS, ElasticPlastic, Law, RigidPlastic, section_law
+from sim.laws import LAWS, ElasticPlastic, FibreSection, Law, RigidPlastic, section_law
 from sim.model import Model
 
 #: Shear stiffness of an Euler–Bernoulli member, which has none of its own to give way, over EI / L²: shear adds 3e-5
@@ -37,14 +38,15 @@ class MemberLaws:
         """
         member, c = self._scene.members[name], self._scene.capacity(name)
         model, shear = self._model.of(name), self._shear(name, c) / length
+        Q_max = c.Q_max if self._model.shear_yields else math.inf
         if pinned:
             if model.law == "rigid-plastic":
                 k = RigidPlastic.of_section(c, length).stiffness
                 return RigidPlastic((c.N_max, c.Q_max, 0.0), (k[0], k[1], 0.0))
-            return ElasticPlastic((c.EA / length, shear, 0.0), (c.N_max, c.Q_max, 0.0))
+            return ElasticPlastic((c.EA / length, shear, 0.0), (c.N_max, Q_max, 0.0))
         if elastic:
             return ElasticPlastic((c.EA / length, shear, c.EI / length), (math.inf, math.inf, math.inf))
-        return section_law(
+        law: Law = section_law(
             model.law,
             member.section,
             member.material,
@@ -54,6 +56,9 @@ class MemberLaws:
             shear_stiffness=shear,
             surface=self._surface(member) if model.law == "interaction" else None,
         )
+        if isinstance(law, ElasticPlastic | FibreSection):
+            law = replace(law, capacity=(law.capacity[0], Q_max, law.capacity[2]))
+        return law
 
     def _shear(self, name: str, c: Capacity) -> float:
         if self._scene.members[name].theory == "euler-bernoulli":

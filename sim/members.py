@@ -36,6 +36,14 @@ class JointPlace:
 
 
 @dataclass(frozen=True)
+class Settlement:
+    """What a support that settles is fixed to, a body that starts at the origin, and how far that goes [m]."""
+
+    body: pymunk.Body
+    way: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class Assembly:
     """A scene as pymunk bodies and joints, ready to step.
 
@@ -59,6 +67,8 @@ class Assembly:
         Those that a motion begins with; to be made to act before each of its steps.
     pattern : tuple of BodyLoad
         Proportional loads at a load factor of 1.
+    settlements : tuple of Settlement
+        Of supports, all of which are there from the start unless `settle` lets them grow.
     """
 
     space: pymunk.Space
@@ -71,6 +81,12 @@ class Assembly:
     dead_loads: tuple[BodyLoad, ...]
     sudden_loads: tuple[BodyLoad, ...]
     pattern: tuple[BodyLoad, ...]
+    settlements: tuple[Settlement, ...]
+
+    @property
+    def grounds(self) -> tuple[pymunk.Body, ...]:
+        """What supports are fixed to: the world, and what settles."""
+        return (self.space.static_body, *(support.body for support in self.settlements))
 
     def step(self, dt: float, share: float = 1.0, *, sudden: bool = False) -> None:
         """Step the space by ``dt`` [s], with a share of the dead loads acting, and the sudden ones if wanted."""
@@ -141,6 +157,7 @@ def assemble(
         dead_loads=body_loads(scene, "dead", spans, nodes),
         sudden_loads=body_loads(scene, "step", spans, nodes),
         pattern=body_loads(scene, "proportional", spans, nodes),
+        settlements=tuple(builder.settlements),
     )
 
 
@@ -162,6 +179,7 @@ class _Builder:
         self.ground = pieces.space.static_body
         self.places: list[JointPlace] = []
         self.joints: list[DuctileJoint] = []
+        self.settlements: list[Settlement] = []
 
     def join(self, name: str) -> None:
         """Joints of one member, from its start to its end."""
@@ -219,20 +237,24 @@ class _Builder:
             k = RIGID * max(self.scene.capacity(m).EA / self.scene.axis(m)[2] for m in members)
             turn = RIGID * max(self.scene.capacity(m).EI / self.scene.axis(m)[2] for m in members)
             x, y, rotation = (stiffness * held for stiffness, held in zip((k, k, turn), node.held, strict=True))
-            joint = self._to_ground(node, body, (x, y, rotation))
-            # A support that settles pulls its node along: its spring is as long as the settlement at first.
-            joint.geometry[0] += node.settlement[0]
-            joint.geometry[1] += node.settlement[1]
+            if node.settlement == (0.0, 0.0):
+                self._to_ground(self.ground, node, body, (x, y, rotation))
+            else:
+                # Outside the space, so that nothing but `settle` moves it.
+                support = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+                self._to_ground(support, node, body, (x, y, rotation))
+                support.position = way = (float(node.settlement[0]), float(node.settlement[1]))
+                self.settlements.append(Settlement(support, way))
         if node.bearing:
             law = Bearing(float(node.bearing))
             upwards = 0.5 * math.pi
             self._add(DuctileJoint(self.ground, body, node.at, law, direction=upwards, scheme=self.model.scheme))
         if node.spring is not None:
             x, y, rotation = map(float, node.spring)
-            self._to_ground(node, body, (x, y, rotation))
+            self._to_ground(self.ground, node, body, (x, y, rotation))
 
-    def _to_ground(self, node: Node, body: pymunk.Body, stiffness: tuple[float, float, float]) -> DuctileJoint:
+    def _to_ground(
+        self, ground: pymunk.Body, node: Node, body: pymunk.Body, stiffness: tuple[float, float, float]
+    ) -> None:
         law = ElasticPlastic(stiffness, (math.inf, math.inf, math.inf))
-        joint = DuctileJoint(self.ground, body, node.at, law, direction=0.0, scheme=self.model.scheme)
-        self._add(joint)
-        return joint
+        self._add(DuctileJoint(ground, body, node.at, law, direction=0.0, scheme=self.model.scheme))

@@ -42,6 +42,8 @@ class Model:
         β and δ of the time integration.
     hinge_length : float, optional
         Length of the hinges of the rule ``"radau"`` [m]; by default the depth of each member's section.
+    shear_yields : bool
+        Whether joints bear no more shear than Q_max; where not, the law ``"interaction"`` still knows of it.
     members : mapping
         By name, the members that have a model of their own.
     """
@@ -55,6 +57,7 @@ class Model:
     damping: float = 0.0
     scheme: tuple[float, float] = IMPLICIT_EULER
     hinge_length: float | None = None
+    shear_yields: bool = True
     members: Mapping[str, MemberModel] = field(default_factory=dict, hash=False)
 
     def of(self, member: str) -> MemberModel:

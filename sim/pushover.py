@@ -15,6 +15,7 @@ from sim.body_loads import BodyLoad
 from sim.load_driver import LoadDriver
 from sim.members import JointPlace, assemble
 from sim.model import Model
+from sim.second_order import SecondOrder
 from sim.settling import settle
 from sim.structure import SolverError
 
@@ -88,6 +89,8 @@ def push_over(
     model: Model,
     distances: np.ndarray,
     watch: Callable[[float], None] = lambda share: None,
+    *,
+    second_order: float = 0.0,
 ) -> Push:
     """Push ``scene`` with rigid bodies under displacement control.
 
@@ -102,6 +105,8 @@ def push_over(
         a turn a larger one; every way from one turn to the next takes `DURATION`.
     watch : callable
         Told the finished share of the push, 0 to 1.
+    second_order : float
+        How many times more the second-order moments act than exact positions make them; see `sim.second_order` [-].
 
     Returns
     -------
@@ -113,14 +118,15 @@ def push_over(
         When a step cannot be taken, too many find no solution, or the pushed node leaves its way.
     """
     assembly = assemble(scene, model, shapes=False)
-    settle(scene, assembly, 1e-9 * scene.push.way())
     structure, node = assembly.structure, assembly.nodes[scene.push.node]
+    loads = assembly.pattern or (BodyLoad(node.body, scene.push_direction(), 0.0, node.point),)
+    moments = SecondOrder(assembly, loads, second_order)
+    settle(scene, assembly, 1e-9 * scene.push.way(), moments.act)
     turns = [0, *(1 + np.flatnonzero(np.diff(np.sign(np.diff(distances))))).tolist(), len(distances) - 1]
     legs = [distances[a : b + 1] for a, b in itertools.pairwise(turns)]
     steps_a_leg = max(1, round(DURATION / model.dt))
     steps = steps_a_leg * len(legs)
     travel = np.concatenate([_eased(leg, steps_a_leg) for leg in legs])
-    loads = assembly.pattern or (BodyLoad(node.body, scene.push_direction(), 0.0, node.point),)
     driver = LoadDriver(structure, loads, node, scene.push_direction(), float(np.abs(distances).max()))
     newton_before = structure.newton_steps
     displacement, load = np.empty(steps), np.empty(steps)
@@ -128,6 +134,7 @@ def push_over(
     seconds = 0.0
     for k in range(steps):
         driver.aim(travel[k], model.dt)
+        moments.act(model.dt, factor=driver.factor)
         started = time.thread_time()
         assembly.step(model.dt)
         seconds += time.thread_time() - started

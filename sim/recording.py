@@ -155,7 +155,9 @@ class Recorder:
     def _keep(self) -> None:
         """Keep the present moment."""
         space = self._space
-        present = dict.fromkeys((space.static_body, *space.bodies))
+        # Supports that settle are in no space.
+        held = (body for joint in self._joints.joints for body in (joint.a, joint.b) if body.space is None)
+        present = dict.fromkeys((space.static_body, *space.bodies, *held))
         for body in present:
             if body not in self._bodies:
                 self._bodies[body] = _Seen(body)

@@ -8,8 +8,8 @@ from cantilevers import cantilever
 from conftest import CASES
 from frames import frame_text, push_down
 
+from calibration.comparable_push import push_model
 from calibration.fitting import LoadCase, fit, fitted
-from calibration.small_displacements import push_model
 from capacity import InputError
 from scene import Scene, parse_scene
 from sim import Model, follow

@@ -9,14 +9,13 @@ from conftest import CASES
 from open_scenes import open_scenes
 
 import sim
-from calibration.small_displacements import push_over_small
+from calibration.comparable_push import push_model
 from scene import Scene, parse_scene
 from sim import Model
 
 SCENES = open_scenes(CASES)
 FIBRES = Model("lobatto", 9, "fibre", 16)
-#: Geometry that turns with a large force needs a finer step.
-FINE = Model("lobatto", 9, "fibre", 24, dt=1 / 240)
+FINE = Model("lobatto", 9, "fibre", 24)
 #: What knows no interaction of N and M, as the closed form of the collapse loads.
 HINGES = Model("lobatto", 5, "elastic-plastic")
 
@@ -61,7 +60,7 @@ def model_for(name: str) -> Model:
 
 
 def pushed(scene: Scene, model: Model, way: np.ndarray) -> sim.Push:
-    return (push_over_small if scene.kinematics == "small" else sim.push_over)(scene, model, way)
+    return (push_model if scene.kinematics == "small" else sim.push_over)(scene, model, way)
 
 
 @pytest.mark.parametrize("name", [name for name in SCENES if not name.startswith(("C3", "C7"))])
@@ -101,7 +100,7 @@ def test_rigid_plastic_portals_fold_at_their_collapse_load(name: str) -> None:
     scene, (_, loads) = parse_scene(SCENES[name], name), curve(name)
     model = Model("lobatto", 3, "rigid-plastic")
     near = sim.push_over(scene, model, np.linspace(0.0, 0.005, 21))
-    far = push_over_small(scene, model, np.linspace(0.0, 0.2, 21))
+    far = push_model(scene, model, np.linspace(0.0, 0.2, 21))
     assert near.unconverged == far.unconverged == 0
     assert near.load_at_distances[-1] == pytest.approx(loads[0], rel=2e-3)
     assert far.load_at_distances[-1] == pytest.approx(loads[0], rel=2e-3)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 
+from calibration.comparable_push import push_model
 from calibration.engines.catalogue import ENGINES, Engine, NoTree
 from calibration.engines.handover import LAW, Handover, hand_over
 from calibration.engines.pushing import CurveErrors, Unstable, curve_errors
 from calibration.engines.text import comment
 from calibration.engines.to_pymunk import module_text, push_module
 from calibration.errors import compare
-from calibration.small_displacements import push_model
 from calibration.tuning import REFERENCE_TOLERANCE
 from fem_reference import PushAnswer, push_over
 from scene import Scene

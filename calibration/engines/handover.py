@@ -186,7 +186,7 @@ def hand_over(scene: Scene, model: Model, name: str = "", damping_ratio: float =
         raise InputError("members", "the scene has none", "name a scene with members to hand over")
     assembly = assemble(scene, model, shapes=False)
     bodies = list(assembly.space.bodies)
-    number = {body: i for i, body in enumerate(bodies)} | {assembly.space.static_body: -1}
+    number = {body: i for i, body in enumerate(bodies)} | dict.fromkeys(assembly.grounds, -1)
 
     def numbered(loads: Sequence[BodyLoad]) -> tuple[PieceLoad, ...]:
         return tuple(PieceLoad(number[load.body], load.force, load.moment, load.point) for load in loads)

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from calibration import errors, small_displacements
+from calibration import comparable_push, errors
 from calibration.result_cache import REFERENCE_CODE, content_key
 from calibration.study import hard_cases, measure
 from calibration.study.points import Point
@@ -25,7 +25,7 @@ NAME = "study.jsonl"
 
 def point_keys(scene: Scene, points: Sequence[Point]) -> dict[str, Point]:
     """Each point under a digest of itself, the scene and the code that answers."""
-    measuring = [inspect.getsource(module) for module in (measure, hard_cases, errors, small_displacements)]
+    measuring = [inspect.getsource(module) for module in (measure, hard_cases, errors, comparable_push)]
     content = content_key(scene, measuring, packages=(*REFERENCE_CODE, "sim", "calibration.engines"))
     return {hashlib.sha256(f"{content} {point!r}".encode()).hexdigest()[:24]: point for point in points}
 

@@ -6,11 +6,11 @@ import statistics
 from dataclasses import asdict
 from typing import Any
 
+from calibration.comparable_push import push_model
 from calibration.engines.handover import hand_over
 from calibration.engines.pushing import Unstable, curve_errors
 from calibration.engines.to_pymunk import Turn, module_text, push_module
 from calibration.errors import compare
-from calibration.small_displacements import push_model
 from calibration.study.hard_cases import let_down
 from calibration.study.points import HardPoint, ModelPoint, Point
 from capacity import InputError

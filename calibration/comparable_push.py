@@ -1,10 +1,14 @@
-"""Pushes in which displacements count as small.
+"""Pushes of a model that leave out what its reference leaves out.
 
-The rigid bodies of a simulation turn by what they turn; equilibrium is where they have moved to. A reference of small
-displacements leaves that out, and a model compared with it must leave out the same, or geometry would be taken for an
-error of the joints. Where geometry has no part, a structure of yield stress ε fy under ε times its loads, settlements
-and prescribed displacements answers with ε times the loads; and what geometry adds falls with ε. So the model is pushed
-with all of them `SHARE` times as large, and its answer is enlarged again.
+Geometry. The rigid bodies of a simulation turn by what they turn; equilibrium is where they have moved to. A reference
+of small displacements knows nothing of that, one of P–Δ only that axial forces turn with the chords, and a model must
+leave out the same, or geometry would be taken for an error of the joints. Where geometry has no part, a structure of
+yield stress ε fy under ε times its loads, settlements and prescribed displacements answers with ε times the loads; and
+what geometry adds falls with ε. So the model is pushed with all of them `SHARE` times as large, and its answer is
+enlarged again. Of the moments of P–Δ, forces times rotations, which come out ε² times as large, P–Δ wants 1/ε times as
+much and small displacements want nothing; `sim.second_order` sees to the difference.
+
+Shear. Beams of the reference do not yield in shear, so the joints pushed beside them do not either.
 """
 
 from __future__ import annotations
@@ -16,22 +20,24 @@ import msgspec
 import numpy as np
 
 from capacity import Material, StressStrain
+from fem_reference import wants_plane_stress
 from scene import Scene
 from scene.quantities import Acceleration, Force, ForcePerLength, Length, Moment
 from sim import Model, Push, push_over
 
 #: ε: what geometry adds is this much smaller, and rounding, some 1e-12 of a deformation, still far smaller.
 SHARE = 1e-3
+# By kinematics: how many times more of the second-order moments is wanted.
+_SECOND_ORDER = {"small": -1.0, "p-delta": 1.0 / SHARE - 1.0}
 
 
 def push_model(scene: Scene, model: Model, distances: np.ndarray) -> Push:
-    """Push ``model`` through ``distances`` [m], with what geometry the scene's kinematics asks for."""
-    return (push_over_small if scene.kinematics == "small" else push_over)(scene, model, distances)
-
-
-def push_over_small(scene: Scene, model: Model, distances: np.ndarray) -> Push:
-    """`sim.push_over` of ``scene`` in the limit of small displacements."""
-    push = push_over(shrunk(scene, SHARE), model, SHARE * distances)
+    """Push ``model`` through ``distances`` [m] as the reference of ``scene`` is pushed."""
+    model = replace(model, shear_yields=model.shear_yields and wants_plane_stress(scene))
+    if scene.kinematics == "large":
+        return push_over(scene, model, distances)
+    more = _SECOND_ORDER[scene.kinematics]
+    push = push_over(shrunk(scene, SHARE), model, SHARE * distances, second_order=more)
     return replace(
         push,
         displacement=push.displacement / SHARE,

@@ -1,0 +1,73 @@
+"""The second-order share of equilibrium: moments of forces whose points a body has turned.
+
+A body that turns by θ bears its forces F_k where their points r_k turn to. To first order in θ that gives it the moment
+
+    Σ (θ ẑ × r_k) × F_k = -θ Σ r_k · F_k,
+
+which is all that P–Δ knows of geometry. In a simulation positions are exact, but a step begins with them and ends with
+the forces of its end: the moment lags by what the body turns in the step. A push, which asks for states of rest, is
+given what is missing. And it can be given more: g times the moment of the whole rotation stands for a structure that
+turns g + 1 times as far under the same forces; g = -1 for one that is in equilibrium where it was built.
+
+In a step that takes θ to θ + h ω, with Σ r·F = k, the moment -k (g θ + (g + 1) h ω) is missing. Of ω only the value
+before the step is known. Forces that pull outwards, k > 0, resist the turn, and resisting late they would shake the
+body: their part acts implicitly, as an inertia that is greater by (g + 1) h² k while I ω stays what it is, which makes
+of ω the value before the step in the formula above.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pymunk
+
+from sim.body_loads import BodyLoad
+from sim.members import Assembly
+
+
+class SecondOrder:
+    """Second-order moments of the bodies of ``assembly``, which stands as it was built.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    pattern : sequence of BodyLoad
+        What is driven, at a load factor of 1.
+    more : float
+        g above [-].
+    """
+
+    def __init__(self, assembly: Assembly, pattern: Sequence[BodyLoad], more: float) -> None:
+        self._structure, self._more = assembly.structure, more
+        self._dead_loads, self._pattern = assembly.dead_loads, pattern
+        self._bodies = [b for b in self._structure.bodies if b.body_type == pymunk.Body.DYNAMIC]
+        self._row = {body: i for i, body in enumerate(self._bodies)}
+        self._inertia = np.array([body.moment for body in self._bodies])
+        self._start = np.array([body.angle for body in self._bodies])
+        # Σ r · F of every body for a unit of N and Q in every joint; both turn with it. Tension pulls the first body
+        # of a joint along its axis.
+        self._of_joints = np.zeros((len(self._bodies), len(assembly.joints), 2))
+        for k, joint in enumerate(assembly.joints):
+            axis = pymunk.Vec2d.from_polar(1.0, joint.direction)
+            for body, sign in ((joint.a, 1.0), (joint.b, -1.0)):
+                if body in self._row:
+                    arm = pymunk.Vec2d(*joint.at) - body.position
+                    self._of_joints[self._row[body], k] += sign * arm.dot(axis), sign * arm.dot(axis.perpendicular())
+
+    def act(self, dt: float, dead_share: float = 1.0, factor: float = 0.0) -> None:
+        """Act in the next step of ``dt`` [s], with a share of the dead loads and a load factor as in the last."""
+        reach = np.einsum("bjk,jk->b", self._of_joints, self._structure.force[:, :2])
+        for loads, share in ((self._dead_loads, dead_share), (self._pattern, factor)):
+            for load in loads:
+                if load.body in self._row:
+                    arm = load.body.local_to_world(load.point) - load.body.position
+                    reach[self._row[load.body]] += share * arm.dot(load.force)
+        angle, step = np.array([(body.angle, dt * body.angular_velocity) for body in self._bodies]).T
+        # Chipmunk moves the bodies by one step before it asks for forces.
+        turn = self._more * (angle + step - self._start) + (self._more + 1.0) * step
+        moments = (-turn * reach).tolist()
+        implicit = (self._inertia + (self._more + 1.0) * dt * dt * np.maximum(reach, 0.0)).tolist()
+        for body, moment, inertia in zip(self._bodies, moments, implicit, strict=True):
+            body.moment = inertia
+            body.torque += moment

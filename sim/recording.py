@@ -156,7 +156,7 @@ class Recorder:
         """Keep the present moment."""
         space = self._space
         # Supports that settle are in no space.
-        held = (body for joint in self._joints.joints for body in (joint.a, joint.b) if body.space is None)
+        held = (joint.a for joint in self._joints.joints if joint.a.body_type == pymunk.Body.KINEMATIC)
         present = dict.fromkeys((space.static_body, *space.bodies, *held))
         for body in present:
             if body not in self._bodies:

@@ -15,16 +15,17 @@ from fem_reference import MotionResult, motion_field_files, remarks
 from scene import Scene
 
 _ROWS = 11
+_HINGE = ("node", "member", "position", "time", "time_error", "position_error")
 _ENERGIES = ("kinetic", "elastic", "plastic", "external")
 
 
 def as_object(result: MotionResult, scene: Scene) -> dict[str, Any]:
-    """A motion as what JSON can say; SI. It has no load and names no hinges."""
+    """A motion as what JSON can say; SI. It has no load."""
     return {
         "time": result.time.tolist(),
         "displacement": result.displacement.tolist(),
         "load": [],
-        "hinges": [],
+        "hinges": [{name: getattr(hinge, name) for name in _HINGE} for hinge in result.hinges],
         "error_estimate": result.error_estimate,
         "method": result.method,
         "seconds": result.seconds,
@@ -55,8 +56,10 @@ def files(found: dict[str, Any], title: str) -> dict[str, str]:
     columns = [found["time"], found["displacement"], *(found["energy"][name] for name in _ENERGIES)]
     rows = zip(*columns, *([row[i] for row in path] for path in nodes.values() for i in (0, 1)), strict=True)
     residual = [[name, *moved, found["residual_error"]] for name, moved in found["residual"].items()]
+    hinge_head = ["node", "member", "position_m", "time_s", "time_error_s", "position_error_m"]
     return {
         "reference.csv": csv_text(head, rows),
+        "hinges.csv": csv_text(hinge_head, [list(hinge.values()) for hinge in found["hinges"]]),
         "residual.csv": csv_text(["node", "x_m", "y_m", "error_m"], residual),
         "reference.svg": _svg(found, title),
         **found["fields"],
@@ -64,7 +67,7 @@ def files(found: dict[str, Any], title: str) -> dict[str, str]:
 
 
 def print_answer(found: dict[str, Any], console: Console) -> None:
-    """Peak, motion, residual displacements and energies, each with its error."""
+    """Peak, motion, energies, hinges and residual displacements, each with its error."""
     console.print(found["method"])
     console.print(
         f"Peak of {found['node']}: {1e3 * found['peak']:.5g} mm ± {1e3 * found['peak_error']:.2g} mm "
@@ -82,6 +85,14 @@ def print_answer(found: dict[str, Any], console: Console) -> None:
         moved.add_row(*(f"{value:.4g}" for value in values))
     console.print(moved)
     console.print(f"Energies ± {100.0 * energy['error_estimate']:.2g} % of the largest")
+    hinges = Table(title="Hinges, in order", title_justify="left")
+    for name in ("where", "time, ms", "±"):
+        hinges.add_column(name, justify="left" if name == "where" else "right")
+    for hinge in found["hinges"]:
+        where = hinge["node"] or f"{hinge['member']} at {hinge['position']:.4g} m"
+        error = "not in the coarser models" if hinge["time_error"] is None else f"{1e3 * hinge['time_error']:.2g}"
+        hinges.add_row(where, f"{1e3 * hinge['time']:.4g}", error)
+    console.print(hinges)
     rest = Table(title=f"At rest, ± {1e3 * found['residual_error']:.2g} mm", title_justify="left")
     for name in ("node", "x, mm", "y, mm"):
         rest.add_column(name, justify="left" if name == "node" else "right")

@@ -3,6 +3,7 @@
 from fem_reference.beam_fields import motion_field_files, push_field_files
 from fem_reference.dynamics import MotionResult, motion
 from fem_reference.hinge_events import HingeEvent
+from fem_reference.hinge_times import HingeTime
 from fem_reference.member_results import MemberErrors, MemberPath, MemberResult
 from fem_reference.modes import Modes, natural_modes
 from fem_reference.paths import NotConverged
@@ -15,6 +16,7 @@ __all__ = [
     "Energy",
     "Fields",
     "HingeEvent",
+    "HingeTime",
     "MemberErrors",
     "MemberPath",
     "MemberResult",

@@ -15,6 +15,7 @@ import numpy as np
 from capacity import InputError
 from fem_reference.frame import Frame
 from fem_reference.frame_mesh import build_frame
+from fem_reference.hinge_times import HingeTime, hinge_times, with_time_errors
 from fem_reference.member_results import MemberResult, member_results
 from fem_reference.modes import Masses, masses
 from fem_reference.paths import State, Trace
@@ -56,6 +57,8 @@ class MotionResult:
         element.
     member_time : (j,) float
         [s]
+    hinges : tuple of HingeTime
+        In the order in which they form.
     kinetic, elastic, plastic, external : (k,) float
         Energies of motion and stored, plastic work, and work of the loads since the start [J].
     peak, peak_time : float
@@ -84,6 +87,7 @@ class MotionResult:
     displacements: dict[str, np.ndarray]
     members: dict[str, MemberResult]
     member_time: np.ndarray
+    hinges: tuple[HingeTime, ...]
     kinetic: np.ndarray
     elastic: np.ndarray
     plastic: np.ndarray
@@ -172,6 +176,7 @@ def motion(
         displacements=fine.moved,
         members=fine.members,
         member_time=np.linspace(0.0, asked.duration, _STATES),
+        hinges=with_time_errors(fine.hinges, [other.hinges for other in others]),
         kinetic=kinetic,
         elastic=elastic,
         plastic=plastic,
@@ -198,12 +203,13 @@ def _gap(fine: np.ndarray, other: np.ndarray) -> float:
 
 @dataclass(frozen=True)
 class _Followed:
-    """One model's motion: displacements by node, energies (k, 4) and where it comes to rest."""
+    """One model's motion: displacements by node, energies (k, 4), where it comes to rest, and its hinges."""
 
     moved: dict[str, np.ndarray]
     energies: np.ndarray
     rest: dict[str, tuple[float, float]]
     members: dict[str, MemberResult]
+    hinges: tuple[HingeTime, ...]
 
 
 def _follow(
@@ -231,15 +237,19 @@ def _follow(
     energies[0] = stepper.energies()
     states = Trace()
     state.record(states, 0.0)
+    stress = [state.response.stress]
     for k in range(steps):
         stepper.advance(step)
         for name, dofs in frame.node_dofs.items():
             moved[name][k + 1] = (state.displacement - start)[dofs[:2]]
         energies[k + 1] = stepper.energies()
+        stress.append(state.response.stress)
         if (k + 1) * (_STATES - 1) % steps < _STATES - 1:
             state.record(states, 0.0)
         watch((k + 1) / steps)
     energies[:, 3] -= energies[0, 3]
+    within = np.append(0.0, (np.arange(1, steps + 1) - stepper.alpha_f) * step)
+    hinges = hinge_times(frame, scene, within, np.array(stress))
     if frame.bearings.any() or frame.springs.any() or any(any(node.held) for node in scene.nodes.values()):
         stepper.come_to_rest(step)
     rest = {name: (state.displacement - start)[dofs[:2]] for name, dofs in frame.node_dofs.items()}
@@ -248,6 +258,7 @@ def _follow(
         energies,
         {name: (float(x), float(y)) for name, (x, y) in rest.items()},
         member_results(scene, frame, states),
+        hinges,
     )
 
 

@@ -16,6 +16,7 @@ A hinge that grows along its member is one hinge, and so is one at a node where 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,7 @@ from scene import Scene
 #: Shares of M_pl,N from which the load at which it is reached is found; the second makes a section a hinge.
 NEAR, FULL = 0.995, 0.9992
 #: Share of M_p at which an ideal hinge has formed.
-_THERE = 1.0 - 1e-6
+THERE = 1.0 - 1e-6
 #: Share of a path's last rise at which it is as good as level.
 _LEVEL = 0.999
 
@@ -73,9 +74,8 @@ def plastic_moment(y: np.ndarray, area: np.ndarray, yield_stress: float, N: np.n
     )
 
 
-def utilisation(frame: Frame, trace: Trace) -> np.ndarray:
-    """|M| / M_pl,N at every point of the path and quadrature point, (k, n, 2)."""
-    stress = np.array(trace.stress)
+def utilisation(frame: Frame, stress: np.ndarray) -> np.ndarray:
+    """|M| / M_pl,N at every point of a path and quadrature point, (k, n, 2), from (N, M, Q) there, (k, n, 2, 3)."""
     shares = []
     start = 0
     for mesh in frame.meshes.values():
@@ -91,8 +91,26 @@ def utilisation(frame: Frame, trace: Trace) -> np.ndarray:
 
 def hinge_events(frame: Frame, scene: Scene, trace: Trace) -> tuple[HingeEvent, ...]:
     """Hinges of a path in the order in which they form."""
-    share, load, displacement = utilisation(frame, trace), np.array(trace.load), np.array(trace.displacement)
+    share, load = utilisation(frame, np.array(trace.stress)), np.array(trace.load)
+    displacement = np.array(trace.displacement)
     found: list[tuple[float, str, int, float, float, float]] = []
+    for name, point, station, history in full_sections(frame, share):
+        if scene.yielding == "ideal-hinges":
+            time, at = _ideal_hinge(history, load, displacement)
+        else:
+            time = _time_of_hinge(history, load)
+            at = [float(np.interp(time, np.arange(len(load)), values)) for values in (load, displacement)]
+        found.append((time, name, point, station, at[0], at[1]))
+    loads = {(name, point): at for _, name, point, _, *at in found}
+    kept = apart(scene, [(time, name, point, station) for time, name, point, station, *_ in found])
+    return tuple(HingeEvent(name, station, node, *loads[name, point]) for _, name, point, station, node in kept)
+
+
+def full_sections(frame: Frame, share: np.ndarray, level: float = FULL) -> Iterator[tuple[str, int, float, np.ndarray]]:
+    """Every section whose ``share`` of M_pl,N (k, n, 2) comes to ``level``.
+
+    As its member, quadrature point in order along it, distance from its start [m] and share (k,).
+    """
     start = 0
     for name, mesh in frame.meshes.items():
         count = len(mesh.weights)
@@ -100,30 +118,48 @@ def hinge_events(frame: Frame, scene: Scene, trace: Trace) -> tuple[HingeEvent, 
         history = share[:, start : start + count].reshape(len(share), -1)[:, order]
         stations = mesh.stations.ravel()[order]
         start += count
-        for i in np.flatnonzero((history >= FULL).any(axis=0)):
-            if scene.yielding == "ideal-hinges":
-                time, at = _ideal_hinge(history[:, i], load, displacement)
-            else:
-                time = _time_of_hinge(history[:, i], load)
-                at = [float(np.interp(time, np.arange(len(load)), values)) for values in (load, displacement)]
-            found.append((time, name, int(i), float(stations[i]), at[0], at[1]))
-    events: list[HingeEvent] = []
-    zones: dict[str, list[tuple[int, float]]] = {name: [] for name in frame.meshes}
+        for point in np.flatnonzero((history >= level).any(axis=0)):
+            yield name, int(point), float(stations[point]), history[:, point]
+
+
+def apart(
+    scene: Scene, found: list[tuple[float, str, int, float]], travelling: bool = False
+) -> list[tuple[float, str, int, float, str]]:
+    """The sections that became hinges, in order of time, less those that an earlier hinge has grown to.
+
+    Parameters
+    ----------
+    scene : Scene
+    found : list of (float, str, int, float)
+        When, in which member, at which quadrature point in order along it, and how far from its start [m].
+    travelling : bool
+        Whether a hinge that has grown along its member to a node counts there again.
+
+    Returns
+    -------
+    list of (float, str, int, float, str)
+        The same with the node it is at, or empty.
+    """
+    kept = []
+    zones: dict[str, list[tuple[int, float]]] = {name: [] for name in scene.members}
+    begun: dict[str, list[tuple[int, float]]] = {name: [] for name in scene.members}
     seen: set[str] = set()
-    for _, name, point, station, *at in sorted(found):
+    for time, name, point, station in sorted(found):
         near = 0.5 * scene.members[name].section.depth
-        grown = any(abs(point - j) <= 1 or abs(station - x) <= near for j, x in zones[name])
-        zones[name].append((point, station))
         node = _node_at(scene, name, station)
+        known = begun[name] if travelling and node else zones[name]
+        grown = any(abs(point - j) <= 1 or abs(station - x) <= near for j, x in known)
+        zones[name].append((point, station))
         if grown or (node in seen and _ends_at(scene, node) == 2):
             continue
         if node:
             seen.add(node)
-        events.append(HingeEvent(name, station, node, *at))
-    return tuple(events)
+        begun[name].append((point, station))
+        kept.append((time, name, point, station, node))
+    return kept
 
 
-def _first_time(values: np.ndarray, level: float) -> float:
+def first_time(values: np.ndarray, level: float) -> float:
     """Where along a path, in points, ``values`` first come to ``level``."""
     k = int(np.argmax(values >= level))
     return k - 1 + float((level - values[k - 1]) / (values[k] - values[k - 1])) if k else 0.0
@@ -132,9 +168,9 @@ def _first_time(values: np.ndarray, level: float) -> float:
 def _time_of_hinge(share: np.ndarray, load: np.ndarray) -> float:
     """Where along a path, in points, a section with M / M_pl,N = ``share`` becomes a hinge."""
     if share.max() > 1.0 + 1e-6:
-        return _first_time(share, 1.0)
+        return first_time(share, 1.0)
     index = np.arange(len(load))
-    near, full = _first_time(share, NEAR), _first_time(share, FULL)
+    near, full = first_time(share, NEAR), first_time(share, FULL)
     here, there = np.interp([near, full], index, load)
     root_near, root_full = np.sqrt(1.0 - NEAR), np.sqrt(1.0 - FULL)
     missing = abs(there - here) * root_full / (root_near - root_full)
@@ -142,14 +178,14 @@ def _time_of_hinge(share: np.ndarray, load: np.ndarray) -> float:
     left = (index > full) & (share < FULL)
     stop = int(np.argmax(left)) if left.any() else len(load)
     found = np.where((index >= full) & (index < stop), np.abs(load - there), 0.0)
-    return max(full, _first_time(found, min(missing, _LEVEL * found.max())))
+    return max(full, first_time(found, min(missing, _LEVEL * found.max())))
 
 
 def _ideal_hinge(share: np.ndarray, load: np.ndarray, displacement: np.ndarray) -> tuple[float, list[float]]:
     """Where along a path, in points, an ideal hinge with M / M_p = ``share`` forms; its load and displacement."""
-    k = int(np.argmax(share >= _THERE))
+    k = int(np.argmax(share >= THERE))
     if k < 2:
-        time = _first_time(share, _THERE)
+        time = first_time(share, THERE)
         return time, [float(np.interp(time, [0, 1], values[:2])) for values in (load, displacement)]
     reach = float((1.0 - share[k - 1]) / (share[k - 1] - share[k - 2]))
     at = [float(values[k - 1] + reach * (values[k - 1] - values[k - 2])) for values in (load, displacement)]

@@ -56,13 +56,18 @@ def test_a_motion(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert {"displacement", "load", "hinges", "error_estimate", "method", "seconds", "time", "peak"} <= set(found)
     assert found["node"] == "tip"
     assert found["peak"] < 0.0
+    assert found["hinges"][-1]["node"] == "root"
+    assert 0.0 < found["hinges"][-1]["time"] < 0.02
     folder = tmp_path / "out" / "struck"
     rows = list(csv.DictReader((folder / "reference.csv").read_text(encoding="utf-8").splitlines()))
     assert [float(row["displacement_m"]) for row in rows] == found["displacement"]
-    assert {"residual.csv", "reference.svg", "fields.pvd", "fields-25.vtu"} <= {file.name for file in folder.iterdir()}
+    assert {"residual.csv", "hinges.csv", "reference.svg", "fields.pvd", "fields-25.vtu"} <= {
+        file.name for file in folder.iterdir()
+    }
     ductile("reference", "struck.toml", "--target-error", "2 %")
     said = capsys.readouterr().out
     assert "Peak of tip" in said
+    assert "Hinges, in order" in said
     assert "At rest" in said
 
 

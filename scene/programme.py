@@ -97,6 +97,11 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         In a section, for the fibre law.
     hinge_length : Length, optional
         For the rule ``"radau"`` [m]; by default the depth of each section.
+    refine_at : float, optional
+        Members start with ``coarse_joints`` Gauss–Lobatto points, and get those of the rule once
+        |N| / N_max + |M| / M_yield or |Q| / Q_max passes this in a joint; by default they have them from the start.
+    coarse_joints : int
+        Points in each member at first, where ``refine_at`` is given.
     """
 
     duration: Duration | None = None
@@ -113,3 +118,5 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     law: Literal["rigid-plastic", "elastic-plastic", "interaction", "fibre"] = "elastic-plastic"
     fibres: Annotated[int, msgspec.Meta(ge=4, le=1000)] = 8
     hinge_length: Length | None = None
+    refine_at: Annotated[float, msgspec.Meta(gt=0.0)] | None = None
+    coarse_joints: Annotated[int, msgspec.Meta(ge=2, le=1000)] = 3

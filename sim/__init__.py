@@ -9,7 +9,8 @@ from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint  # noqa
 from sim.joint_arrays import JointArrays  # noqa: E402
 from sim.laws import LAWS, Bearing, ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic, section_law  # noqa: E402
 from sim.limits import Limits  # noqa: E402
-from sim.members import Assembly, JointPlace, assemble  # noqa: E402
+from sim.member_joints import JointPlace  # noqa: E402
+from sim.members import Assembly, assemble  # noqa: E402
 from sim.model import MemberModel, Model  # noqa: E402
 from sim.modes import natural_modes  # noqa: E402
 from sim.motion import Course, follow, set_going  # noqa: E402

@@ -10,13 +10,12 @@ the structure. A force on the node alone is the pattern for which w is the node'
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
-from sim.body_loads import BodyLoad
+from sim.members import Assembly
 from sim.pieces import NodePoint
-from sim.structure import SolverError, Structure
+from sim.structure import SolverError
 
 #: Time over which the node's ways are remembered, and over which it is brought back to where it is wanted [s].
 _MEMORY, _RETURN = 0.5, 0.2
@@ -25,7 +24,16 @@ _ASTRAY = 10.0
 
 
 class LoadDriver:
-    """Drives ``loads`` on ``structure`` so that ``node`` goes its way along ``direction``, of about ``reach`` [m].
+    """Drives the proportional loads of ``assembly``, or else a force on ``node``, so that the node goes its way.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    node : str
+    direction : (float, float)
+        Of the way, of unit length.
+    reach : float
+        About how long it is [m].
 
     Attributes
     ----------
@@ -35,22 +43,12 @@ class LoadDriver:
         By what the loads are multiplied in the last step [-].
     """
 
-    def __init__(
-        self,
-        structure: Structure,
-        loads: Sequence[BodyLoad],
-        node: NodePoint,
-        direction: tuple[float, float],
-        reach: float,
-    ) -> None:
-        self._reach = reach
-        self._structure, self._loads, self._node, self._direction = structure, loads, node, np.array(direction)
-        self._centre = NodePoint(node.body, (node.body.center_of_gravity.x, node.body.center_of_gravity.y))
-        self._index = {body: i for i, body in enumerate(structure.bodies)}
-        self._origin = np.array(node.now())
-        size = sum(load.force[0] ** 2 + load.force[1] ** 2 + load.moment**2 for load in loads)
-        self._stiffness = max(joint.law.elastic_tangent()[0] for joint in structure.joints) / size
-        self._pattern = np.zeros((len(structure.bodies), 3))
+    def __init__(self, assembly: Assembly, node: str, direction: tuple[float, float], reach: float) -> None:
+        self._assembly, self._name, self._direction, self._reach = assembly, node, np.array(direction), reach
+        self._take()
+        self._origin = np.array(self._node.now())
+        size = sum(load.force[0] ** 2 + load.force[1] ** 2 + load.moment**2 for load in self._loads)
+        self._stiffness = max(joint.law.elastic_tangent()[0] for joint in self._structure.joints) / size
         # w for a unit of the node's displacement d: Σ Δw Δd / Σ Δd² over the last while, the tangent's at first.
         self._ratio = 0.0
         self._both = self._own = 0.0
@@ -58,8 +56,24 @@ class LoadDriver:
         self._wanted = 0.0
         self.displacement = self.factor = 0.0
 
+    def _take(self) -> None:
+        """Take the assembly as it is now."""
+        self._structure, self._node = self._assembly.structure, self._assembly.nodes[self._name]
+        x, y = self._direction.tolist()
+        self._loads = self._assembly.driven(self._name, (x, y))
+        centre = self._node.body.center_of_gravity
+        self._centre = NodePoint(self._node.body, (centre.x, centre.y))
+        self._index = {body: i for i, body in enumerate(self._structure.bodies)}
+        self._pattern = np.zeros((len(self._structure.bodies), 3))
+
     def aim(self, wanted: float, dt: float) -> None:
-        """Before a step of ``dt`` [s]: have the node at ``wanted`` [m] along its way at the step's end."""
+        """Before a step of ``dt`` [s]: have the node at ``wanted`` [m] along its way at the step's end.
+
+        Members that are due are refined first.
+        """
+        self._assembly.refine()
+        if self._structure is not self._assembly.structure:
+            self._take()
         self._pattern = self._forces(dt)
         if self._ratio:
             behind = self._wanted - self.displacement

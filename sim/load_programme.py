@@ -10,6 +10,7 @@ import numpy as np
 from scene import Scene
 from sim.body_loads import BodyLoad, body_loads
 from sim.members import Assembly
+from sim.pieces import Span
 
 
 class LoadProgramme:
@@ -19,21 +20,30 @@ class LoadProgramme:
     """
 
     def __init__(self, scene: Scene, assembly: Assembly) -> None:
-        self._dead: Sequence[BodyLoad] = assembly.dead_loads
-        self._sudden: Sequence[BodyLoad] = assembly.sudden_loads
-        self._histories = []
-        for load in scene.loads_of("history"):
-            alone = msgspec.structs.replace(scene, loads=(load,))
-            times, factors = zip(*load.history, strict=True)
-            self._histories.append((times, factors, body_loads(alone, "history", assembly.spans, assembly.nodes)))
+        self._scene, self._assembly = scene, assembly
+        self._spans: tuple[Span, ...] = ()
+        self._histories: list[tuple[Sequence[float], Sequence[float], tuple[BodyLoad, ...]]] = []
 
     def act(self, time: float, dead_share: float) -> None:
         """Let the loads of ``time`` [s] act in the next step, with a share of the dead ones."""
-        for load in self._dead:
+        assembly = self._assembly
+        for load in assembly.dead_loads:
             load.act(dead_share)
-        for load in self._sudden:
+        for load in assembly.sudden_loads:
             load.act()
+        if self._spans is not assembly.spans:
+            self._spans, self._histories = assembly.spans, self._followed()
         for times, factors, loads in self._histories:
             factor = float(np.interp(time, times, factors))
             for load in loads:
                 load.act(factor)
+
+    def _followed(self) -> list[tuple[Sequence[float], Sequence[float], tuple[BodyLoad, ...]]]:
+        """Times and factors of each history, and what it multiplies."""
+        scene, assembly = self._scene, self._assembly
+        followed: list[tuple[Sequence[float], Sequence[float], tuple[BodyLoad, ...]]] = []
+        for load in scene.loads_of("history"):
+            alone = msgspec.structs.replace(scene, loads=(load,))
+            times, factors = zip(*load.history, strict=True)
+            followed.append((times, factors, body_loads(alone, "history", assembly.spans, assembly.nodes)))
+        return followed

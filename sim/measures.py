@@ -98,18 +98,19 @@ class Watch:
 
 def _reader(measure: Measure, world: World) -> Callable[[], float]:
     if measure.quantity in get_args(JointQuantity):
-        joints = [joint for group in world.joints.values() for joint in group]
-        if measure.of != ALL_JOINTS:
-            joints = list(world.joints[measure.of])
-        return lambda: _of_joints(measure.quantity, joints)
+        return lambda: _of_joints(measure.quantity, _joints_called(measure.of, world))
     if measure.quantity in ("first-contact", "overlap"):
         contacts = world.contacts_of(world.bodies_called(measure.of))
         return lambda: contacts.first if measure.quantity == "first-contact" else contacts.overlap
     if measure.quantity == "kinetic-energy":
         bodies = world.bodies_called(measure.of)
         return lambda: sum(_kinetic_energy(body) for body in bodies)
-    body, point = world.point_called(measure.of)
-    return _of_point(measure.quantity, body, point)
+    return _of_point(measure.quantity, lambda: world.point_called(measure.of))
+
+
+def _joints_called(name: str, world: World) -> Sequence[DuctileJoint]:
+    """All joints, or those of a member, or that of the name, as there are now."""
+    return [joint for own in world.joints.values() for joint in own] if name == ALL_JOINTS else world.joints[name]
 
 
 def _kinetic_energy(body: pymunk.Body) -> float:
@@ -117,19 +118,23 @@ def _kinetic_energy(body: pymunk.Body) -> float:
     return 0.5 * (body.mass * body.velocity.length_squared + body.moment * body.angular_velocity**2)
 
 
-def _of_point(quantity: str, body: pymunk.Body, point: tuple[float, float]) -> Callable[[], float]:
-    origin = body.local_to_world(point)
+def _of_point(quantity: str, now: Callable[[], tuple[pymunk.Body, tuple[float, float]]]) -> Callable[[], float]:
+    """Of a point of a body, which ``now`` says."""
 
     def place() -> pymunk.Vec2d:
+        body, point = now()
         return body.local_to_world(point)
 
     def velocity() -> pymunk.Vec2d:
+        body, point = now()
         return body.velocity_at_local_point(point)
+
+    origin = place()
 
     return {
         "x": lambda: place().x,
         "y": lambda: place().y,
-        "angle": lambda: body.angle,
+        "angle": lambda: now()[0].angle,
         "displacement": lambda: place().get_distance(origin),
         "vx": lambda: velocity().x,
         "vy": lambda: velocity().y,

@@ -2,50 +2,29 @@
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
 
 import pymunk
 
-from scene import MemberEnd, Node, Scene
+from scene import Scene
 from sim.body_loads import BodyLoad, body_loads
 from sim.followed import check_followed
 from sim.joint import DuctileJoint
-from sim.laws import Bearing, ElasticPlastic
-from sim.limits import NO_LIMITS, Limits
+from sim.limits import Limits
+from sim.member_joints import Joined, JointPlace, MemberJoints, Settlement
 from sim.member_laws import MemberLaws
 from sim.model import MemberModel, Model
 from sim.pieces import NodePoint, Piece, Pieces, Span
-from sim.rules import Rule, member_rule
+from sim.refinement import Refinement
+from sim.rules import Rule, lobatto, member_rule
 from sim.shapes import keep_neighbours_apart
 from sim.structure import Structure
 
-#: A spring that counts as rigid is this much stiffer than the members it is tied to.
-RIGID = 1e4
 
-
-@dataclass(frozen=True)
-class JointPlace:
-    """Where a joint sits: ``position`` along ``member`` [m], standing for ``length`` of it [m]."""
-
-    member: str
-    position: float
-    length: float
-
-
-@dataclass(frozen=True)
-class Settlement:
-    """What a support that settles is fixed to, a body that starts at the origin, and how far that goes [m]."""
-
-    body: pymunk.Body
-    way: tuple[float, float]
-
-
-@dataclass(frozen=True)
 class Assembly:
-    """A scene as pymunk bodies and joints, ready to step.
+    """A scene as pymunk bodies and joints, ready to step; `assemble` makes one.
+
+    What it holds is replaced when members are refined.
 
     Attributes
     ----------
@@ -69,11 +48,11 @@ class Assembly:
         Proportional loads at a load factor of 1.
     settlements : tuple of Settlement
         Of supports, all of which are there from the start unless `settle` lets them grow.
+    refined : list of str
+        Members that have been refined, one after the other.
     """
 
-    space: pymunk.Space
     joints: tuple[DuctileJoint, ...]
-    structure: Structure
     pieces: tuple[Piece, ...]
     spans: tuple[Span, ...]
     places: tuple[JointPlace, ...]
@@ -88,8 +67,59 @@ class Assembly:
         """What supports are fixed to: the world, and what settles."""
         return (self.space.static_body, *(support.body for support in self.settlements))
 
+    def __init__(
+        self,
+        scene: Scene,
+        pieces: Pieces,
+        joined: dict[str, Joined],
+        supports: list[DuctileJoint],
+        settlements: list[Settlement],
+        refinement: Refinement | None,
+    ) -> None:
+        self.space, self.settlements = pieces.space, tuple(settlements)
+        self.refined: list[str] = []
+        self._scene, self._pieces, self._joined, self._supports = scene, pieces, joined, supports
+        self._refinement = refinement
+        self._arrange()
+        self.structure = Structure(self.joints)
+        self.space.add(*self.joints)
+
+    def _arrange(self) -> None:
+        """Lay out what there is, in order."""
+        scene, pieces = self._scene, self._pieces
+        own = [joined for name in scene.members for joined in self._joined[name] if joined is not None]
+        self.joints = (*(joint for joint, _ in own), *self._supports)
+        self.places = tuple(place for _, place in own)
+        self.pieces = tuple(piece for name in scene.members for piece in pieces.of[name])
+        self.spans = tuple(span for name in scene.members for span in pieces.spans(name))
+        self.nodes = pieces.node_points()
+        self.dead_loads, self.sudden_loads, self.pattern = (
+            body_loads(scene, kind, self.spans, self.nodes) for kind in ("dead", "step", "proportional")
+        )
+
+    def driven(self, node: str, direction: tuple[float, float]) -> tuple[BodyLoad, ...]:
+        """What a push of ``node`` multiplies: the proportional loads, or else a force of 1 N on it."""
+        point = self.nodes[node]
+        return self.pattern or (BodyLoad(point.body, direction, 0.0, point.point),)
+
+    def refine(self, members: Collection[str] = ()) -> tuple[str, ...]:
+        """Refine the members that bear so much that the model asks for it, and coarse ones among ``members``.
+
+        `step` does it by itself, for what is due. Returns the names of those that were refined: not of a member that
+        has come apart, nor of one to whose pieces a constraint was added by hand; they stay coarse.
+        """
+        if self._refinement is None:
+            return ()
+        members, followers = self._refinement.refine(members)
+        if members:
+            self.structure = followers.get(self.structure, self.structure)
+            self.refined.extend(members)
+            self._arrange()
+        return members
+
     def step(self, dt: float, share: float = 1.0, *, sudden: bool = False) -> None:
         """Step the space by ``dt`` [s], with a share of the dead loads acting, and the sudden ones if wanted."""
+        self.refine()
         for load in self.dead_loads:
             load.act(share)
         if sudden:
@@ -129,36 +159,23 @@ def assemble(
     """
     check_followed(scene)
     laws = MemberLaws(scene, model)
-    rules = {name: _rule(scene, name, model.of(name)) for name in scene.members}
+    finest = {name: _rule(scene, name, model.of(name)) for name in scene.members}
+    rules = {name: _first_rule(model, rule) for name, rule in finest.items()}
     if space is None:
         space = pymunk.Space()
         space.iterations = model.iterations
         space.gravity = (0.0, -scene.gravity)
-    builder = _Builder(scene, model, laws, limits or {}, Pieces(scene, rules, space))
-    for name in scene.members:
-        builder.join(name)
-    for name, body in builder.pieces.at_node.items():
-        builder.support(name, body)
-    nodes = builder.pieces.node_points()
+    pieces = Pieces(scene, rules, space, finest)
+    maker = MemberJoints(scene, model, laws, limits or {}, pieces)
+    joined = {name: maker.all_of(name, rules[name]) for name in scene.members}
+    supports = [joint for name, body in pieces.at_node.items() for joint in maker.supports(name, body)]
     if shapes:
-        builder.pieces.add_shapes()
-        keep_neighbours_apart(space, builder.pieces.bodies(), builder.pieces.greatest_depth())
-    spans = tuple(span for name in scene.members for span in builder.pieces.spans(name))
-    structure = Structure(builder.joints)
-    space.add(*builder.joints)
-    return Assembly(
-        space=space,
-        joints=tuple(builder.joints),
-        structure=structure,
-        pieces=tuple(piece for pieces in builder.pieces.of.values() for piece in pieces),
-        spans=spans,
-        places=tuple(builder.places),
-        nodes=nodes,
-        dead_loads=body_loads(scene, "dead", spans, nodes),
-        sudden_loads=body_loads(scene, "step", spans, nodes),
-        pattern=body_loads(scene, "proportional", spans, nodes),
-        settlements=tuple(builder.settlements),
-    )
+        pieces.add_shapes()
+        keep_neighbours_apart(space, pieces.bodies(), pieces.greatest_depth())
+    refinement = None
+    if model.refine_at is not None:
+        refinement = Refinement(pieces, maker, joined, rules, finest, model.refine_at)
+    return Assembly(scene, pieces, joined, supports, maker.settlements, refinement)
 
 
 def _rule(scene: Scene, name: str, model: MemberModel) -> Rule:
@@ -169,92 +186,8 @@ def _rule(scene: Scene, name: str, model: MemberModel) -> Rule:
     return member_rule(model.rule, model.joints, hinge, name, scene.axis(name)[2])
 
 
-class _Builder:
-    """The joints of `assemble`."""
-
-    def __init__(
-        self, scene: Scene, model: Model, laws: MemberLaws, limits: Mapping[str, Limits], pieces: Pieces
-    ) -> None:
-        self.scene, self.model, self.laws, self.limits, self.pieces = scene, model, laws, limits, pieces
-        self.ground = pieces.space.static_body
-        self.places: list[JointPlace] = []
-        self.joints: list[DuctileJoint] = []
-        self.settlements: list[Settlement] = []
-
-    def join(self, name: str) -> None:
-        """Joints of one member, from its start to its end."""
-        member, rule = self.scene.members[name], self.pieces.rules[name]
-        c, s, length = self.scene.axis(name)
-        x0, y0 = self.scene.nodes[member.start].at
-        own = [piece.body for piece in self.pieces.of[name]]
-        chain = [self._beyond(member.start), *own, self._beyond(member.end)]
-        for i, (a, b) in enumerate(itertools.pairwise(chain)):
-            if a is None or b is None:
-                continue
-            position, share = float(rule.points[i] * length), float(rule.weights[i] * length)
-            first, last = i == 0, i == len(chain) - 2
-            pinned = (first and self._is_hinge(name, "from")) or (last and self._is_hinge(name, "to"))
-            law = self.laws.joint(name, share, pinned=pinned, elastic=bool(rule.elastic[i]))
-            at = (x0 + c * position, y0 + s * position)
-            k = law.elastic_tangent()
-            joint = DuctileJoint(
-                a,
-                b,
-                at,
-                law,
-                direction=math.atan2(s, c),
-                turn=0.5,
-                length=share,
-                damping=(self.model.damping * k[0], self.model.damping * k[3], self.model.damping * k[5]),
-                limits=self.limits.get(name, NO_LIMITS),
-                scheme=self.model.scheme,
-            )
-            self._add(joint)
-            self.places.append(JointPlace(name, position, share))
-
-    def _add(self, joint: DuctileJoint) -> None:
-        if self.ground in (joint.a, joint.b):
-            joint.collide_bodies = False  # a foot stands in the ground that holds it
-        self.joints.append(joint)
-
-    def _beyond(self, node: str) -> pymunk.Body | None:
-        """What a member's end is joined to at ``node``."""
-        if node in self.pieces.at_node:
-            return self.pieces.at_node[node]
-        return None if self.scene.nodes[node].support == "free" else self.ground
-
-    def _is_hinge(self, name: str, end: MemberEnd) -> bool:
-        """Whether a member's end bears no moment."""
-        member = self.scene.members[name]
-        node = member.start if end == "from" else member.end
-        held_by_ground = node not in self.pieces.at_node
-        return end in member.releases or (held_by_ground and self.scene.nodes[node].support == "pinned")
-
-    def support(self, name: str, body: pymunk.Body) -> None:
-        """Rigid springs to the ground where the node of ``body`` is supported, and the node's own spring."""
-        node, members = self.scene.nodes[name], self.pieces.meeting[name]
-        if any(node.held):
-            k = RIGID * max(self.scene.capacity(m).EA / self.scene.axis(m)[2] for m in members)
-            turn = RIGID * max(self.scene.capacity(m).EI / self.scene.axis(m)[2] for m in members)
-            x, y, rotation = (stiffness * held for stiffness, held in zip((k, k, turn), node.held, strict=True))
-            if node.settlement == (0.0, 0.0):
-                self._to_ground(self.ground, node, body, (x, y, rotation))
-            else:
-                # Outside the space, so that nothing but `settle` moves it.
-                support = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-                self._to_ground(support, node, body, (x, y, rotation))
-                support.position = way = (float(node.settlement[0]), float(node.settlement[1]))
-                self.settlements.append(Settlement(support, way))
-        if node.bearing:
-            law = Bearing(float(node.bearing))
-            upwards = 0.5 * math.pi
-            self._add(DuctileJoint(self.ground, body, node.at, law, direction=upwards, scheme=self.model.scheme))
-        if node.spring is not None:
-            x, y, rotation = map(float, node.spring)
-            self._to_ground(self.ground, node, body, (x, y, rotation))
-
-    def _to_ground(
-        self, ground: pymunk.Body, node: Node, body: pymunk.Body, stiffness: tuple[float, float, float]
-    ) -> None:
-        law = ElasticPlastic(stiffness, (math.inf, math.inf, math.inf))
-        self._add(DuctileJoint(ground, body, node.at, law, direction=0.0, scheme=self.model.scheme))
+def _first_rule(model: Model, finest: Rule) -> Rule:
+    """What a member is cut by at first."""
+    if model.refine_at is None or len(finest.points) <= model.coarse_joints:
+        return finest
+    return lobatto(model.coarse_joints)

@@ -44,6 +44,12 @@ class Model:
         Length of the hinges of the rule ``"radau"`` [m]; by default the depth of each member's section.
     shear_yields : bool
         Whether joints bear no more shear than Q_max; where not, the law ``"interaction"`` still knows of it.
+    refine_at : float, optional
+        Members start coarse, with `coarse_joints` Gauss–Lobatto points, and are cut as the model says once
+        |N| / N_max + |M| / M_yield or |Q| / Q_max passes this in one of their joints [-]. By default they do not start
+        coarse.
+    coarse_joints : int
+        With 3, the elastic answer is exact under loads at nodes and under even loads.
     members : mapping
         By name, the members that have a model of their own.
     """
@@ -58,6 +64,8 @@ class Model:
     scheme: tuple[float, float] = IMPLICIT_EULER
     hinge_length: float | None = None
     shear_yields: bool = True
+    refine_at: float | None = None
+    coarse_joints: int = 3
     members: Mapping[str, MemberModel] = field(default_factory=dict, hash=False)
 
     def of(self, member: str) -> MemberModel:

@@ -89,7 +89,6 @@ def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda s
         raise InputError("motion", "the scene has none", 'add [motion] with duration = "0.2 s"')
     assembly = assemble(scene, model, shapes=False)
     settle(scene, assembly, 1e-12)
-    structure = assembly.structure
     set_going(scene, asked, assembly)
     steps = max(1, round(float(asked.duration) / model.dt))
     start = {name: np.array(node.now()) for name, node in assembly.nodes.items()}
@@ -106,8 +105,9 @@ def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda s
     along = {name: path @ unit_vector(asked.direction) for name, path in paths.items()}
     node = asked.watch or max(along, key=lambda name: float(np.ptp(along[name])))
     peak = int(np.argmax(np.abs(along[node])))
-    times, unconverged = model.dt * np.arange(steps + 1), structure.unconverged
+    times, unconverged = model.dt * np.arange(steps + 1), assembly.structure.unconverged
     _come_to_rest(assembly, model.dt, _REST * abs(float(along[node][peak])))
+    structure = assembly.structure
     rest = {name: np.array(point.now()) - start[name] for name, point in assembly.nodes.items()}
     return Course(
         node=node,

@@ -61,7 +61,17 @@ class NodePoint:
 
 
 class Pieces:
-    """All rigid bodies of ``scene`` in ``space``, each member cut by its rule.
+    """All rigid bodies of ``scene`` in ``space``, each member cut by a rule.
+
+    Parameters
+    ----------
+    scene : Scene
+    rules : mapping
+        By member, what it is cut by.
+    space : pymunk.Space
+    finest : mapping
+        By member, the rule with the most joints that it will ever have; what belongs to nodes goes by that, and so they
+        stay what they are.
 
     Attributes
     ----------
@@ -72,8 +82,11 @@ class Pieces:
         of the first bit of each member there, and of the node's own mass.
     """
 
-    def __init__(self, scene: Scene, rules: Mapping[str, Rule], space: pymunk.Space) -> None:
-        self.scene, self.rules, self.space = scene, rules, space
+    def __init__(
+        self, scene: Scene, rules: Mapping[str, Rule], space: pymunk.Space, finest: Mapping[str, Rule]
+    ) -> None:
+        self.scene, self.space = scene, space
+        self._finest = finest
         self.meeting: dict[str, list[str]] = defaultdict(list)
         for name, member in scene.members.items():
             self.meeting[member.start].append(name)
@@ -81,7 +94,9 @@ class Pieces:
         self.at_node = {
             name: self._node_body(name, members) for name, members in self.meeting.items() if self._needs_body(name)
         }
-        self.of = {name: self._cut(name) for name in scene.members}
+        self._at_node_body = {name: body.world_to_local(scene.nodes[name].at) for name, body in self.at_node.items()}
+        self._node_spans = {name: self._bits_of_nodes(name) for name in scene.members}
+        self.of = {name: self._cut(name, rules[name]) for name in scene.members}
 
     def bodies(self) -> list[pymunk.Body]:
         """All of them."""
@@ -89,33 +104,35 @@ class Pieces:
 
     def spans(self, member: str) -> list[Span]:
         """The pieces of a member, and the bits of it that belong to its nodes."""
-        first, last = self.scene.members[member].start, self.scene.members[member].end
-        pieces, length = self.of[member], self.scene.axis(member)[2]
-        spans = [self._span(piece.body, member, piece.start, piece.end) for piece in pieces]
-        if first in self.at_node:
-            spans.append(self._span(self.at_node[first], member, 0.0, pieces[0].start))
-        if last in self.at_node:
-            spans.append(self._span(self.at_node[last], member, pieces[-1].end, length))
-        return spans
+        pieces = [Span(piece.body, member, piece.start, piece.end, (0.0, 0.0)) for piece in self.of[member]]
+        return pieces + self._node_spans[member]
 
-    def _span(self, body: pymunk.Body, member: str, start: float, end: float) -> Span:
-        x, y = self.scene.nodes[self.scene.members[member].start].at
-        c, s, _ = self.scene.axis(member)
-        along = 0.5 * (start + end)
-        mx, my = body.world_to_local((x + c * along, y + s * along))
-        return Span(body, member, start, end, (mx, my))
+    def _bits_of_nodes(self, member: str) -> list[Span]:
+        c, s, length = self.scene.axis(member)
+        own = self.scene.members[member]
+        x, y = self.scene.nodes[own.start].at
+        start, *_, end = self.stops(member, self._finest[member])
+        spans = []
+        for node, first, last in ((own.start, 0.0, start), (own.end, end, length)):
+            if node in self.at_node:
+                body, along = self.at_node[node], 0.5 * (first + last)
+                mx, my = body.world_to_local((x + c * along, y + s * along))
+                spans.append(Span(body, member, first, last, (mx, my)))
+        return spans
 
     def node_points(self) -> dict[str, NodePoint]:
         """The nodes as points of the bodies that they belong to."""
-        points = {}
-        for name, members in self.meeting.items():
-            body = self.at_node.get(name)
-            if body is None:
-                own = self.of[members[0]]
-                body = own[0 if self.scene.members[members[0]].start == name else -1].body
-            x, y = body.world_to_local(self.scene.nodes[name].at)
-            points[name] = NodePoint(body, (x, y))
-        return points
+        return {name: self.node_point(name) for name in self.meeting}
+
+    def node_point(self, name: str) -> NodePoint:
+        """A node as a point of the body that it belongs to."""
+        body = self.at_node.get(name)
+        if body is not None:
+            return NodePoint(body, self._at_node_body[name])
+        member = self.meeting[name][0]
+        first = self.scene.members[member].start == name
+        piece = self.of[member][0 if first else -1]
+        return NodePoint(piece.body, ((-0.5 if first else 0.5) * (piece.end - piece.start), 0.0))
 
     def _needs_body(self, name: str) -> bool:
         node = self.scene.nodes[name]
@@ -125,7 +142,7 @@ class Pieces:
     def _first_bit(self, member: str, node: str) -> tuple[float, float, float, float]:
         """What of ``member`` belongs to its ``node``: its length, the member's direction, and which way it goes on."""
         c, s, length = self.scene.axis(member)
-        points = self.rules[member].points
+        points = self._finest[member].points
         if self.scene.members[member].start == node:
             return length * _NODE_SHARE * (points[1] - points[0]), c, s, 1.0
         return length * _NODE_SHARE * (points[-1] - points[-2]), c, s, -1.0
@@ -160,36 +177,79 @@ class Pieces:
         self.space.add(body)
         return body
 
-    def _cut(self, name: str) -> list[Piece]:
-        """Rigid pieces of one member."""
+    def stops(self, name: str, rule: Rule) -> list[float]:
+        """Where the pieces of a member that is cut by ``rule`` begin and end along it [m]."""
         member = self.scene.members[name]
-        c, s, length = self.scene.axis(name)
-        x0, y0 = self.scene.nodes[member.start].at
-        stops = (self.rules[name].points * length).tolist()
+        stops: list[float] = (rule.points * self.scene.axis(name)[2]).tolist()
         if member.start in self.at_node:
             stops[0] += self._first_bit(name, member.start)[0]
         if member.end in self.at_node:
             stops[-1] -= self._first_bit(name, member.end)[0]
-        pieces = []
-        for start, end in itertools.pairwise(stops):
-            mass, moment = self._inertia(name, end - start)
-            middle = 0.5 * (start + end)
-            body = self._add_body(mass, moment, x0 + c * middle, y0 + s * middle, math.atan2(s, c))
-            pieces.append(Piece(body, name, start, end))
-        return pieces
+        return stops
+
+    def inertias(self, name: str, rule: Rule) -> np.ndarray:
+        """Mass [kg] and moment of inertia [kg m²] of each of these pieces, (n, 2)."""
+        stops = self.stops(name, rule)
+        return np.array([self._inertia(name, end - start) for start, end in itertools.pairwise(stops)])
+
+    def _cut(self, name: str, rule: Rule) -> list[Piece]:
+        """Rigid pieces of one member, along its axis."""
+        c, s, _ = self.scene.axis(name)
+        x0, y0 = self.scene.nodes[self.scene.members[name].start].at
+        stops = np.array(self.stops(name, rule))
+        middles = 0.5 * (stops[:-1] + stops[1:])
+        angles = np.full(len(middles), math.atan2(s, c))
+        return self.pieces_at(name, rule, np.column_stack([x0 + c * middles, y0 + s * middles, angles]))
+
+    def pieces_at(self, name: str, rule: Rule, poses: np.ndarray) -> list[Piece]:
+        """Rigid pieces of one member, new in the space, where ``poses`` (x, y, angle) (n, 3) say."""
+        return [
+            Piece(self._add_body(mass, moment, x, y, angle), name, start, end)
+            for (start, end), (mass, moment), (x, y, angle) in zip(
+                itertools.pairwise(self.stops(name, rule)),
+                self.inertias(name, rule).tolist(),
+                poses.tolist(),
+                strict=True,
+            )
+        ]
+
+    def replace(self, name: str, pieces: list[Piece]) -> None:
+        """Put ``pieces`` in the place of those of a member, with shapes like theirs if they have any."""
+        for piece in pieces:
+            middle = 0.5 * (piece.start + piece.end)
+            old = next(old for old in self.of[name] if middle <= old.end or old is self.of[name][-1])
+            for like in old.body.shapes:
+                shape = self._add_box(name, piece)
+                shape.friction, shape.elasticity, shape.surface_velocity = (
+                    like.friction,
+                    like.elasticity,
+                    like.surface_velocity,
+                )
+                shape.filter, shape.sensor, shape.collision_type = like.filter, like.sensor, like.collision_type
+        for old in self.of[name]:
+            self.space.remove(*old.body.shapes, old.body)
+        self.of[name] = pieces
 
     def add_shapes(self) -> None:
         """A box for each piece, and one for each member's bit of a node, as deep as the section."""
-        for member in self.scene.members:
-            for span in self.spans(member):
-                self._add_box(span.body, member, span.start, span.end)
+        for member, pieces in self.of.items():
+            for piece in pieces:
+                self._add_box(member, piece)
+            x, y = self.scene.nodes[self.scene.members[member].start].at
+            c, s, _ = self.scene.axis(member)
+            for span in self._node_spans[member]:
+                corners = self._corners(member, span.start, span.end)
+                add_box(
+                    span.body, [span.body.world_to_local((x + c * u - s * v, y + s * u + c * v)) for u, v in corners]
+                )
 
-    def _add_box(self, body: pymunk.Body, member: str, start: float, end: float) -> None:
-        x, y = self.scene.nodes[self.scene.members[member].start].at
-        c, s, _ = self.scene.axis(member)
+    def _corners(self, member: str, start: float, end: float) -> list[tuple[float, float]]:
         low, high = self.scene.members[member].section.outline.extent()
-        corners = [(start, low), (end, low), (end, high), (start, high)]
-        add_box(body, [(x + c * u - s * v, y + s * u + c * v) for u, v in corners])
+        return [(start, low), (end, low), (end, high), (start, high)]
+
+    def _add_box(self, member: str, piece: Piece) -> pymunk.Shape:
+        middle = 0.5 * (piece.start + piece.end)
+        return add_box(piece.body, [(u - middle, v) for u, v in self._corners(member, piece.start, piece.end)])
 
     def greatest_depth(self) -> float:
         """Of all members [m]."""

@@ -6,7 +6,6 @@ import itertools
 
 from capacity import InputError
 from scene import Scene
-from sim.body_loads import BodyLoad
 from sim.load_driver import LoadDriver
 from sim.members import Assembly
 from sim.settling import settle
@@ -41,10 +40,8 @@ class PrescribedPush:
         if push.way() == 0.0:
             raise InputError("push.control", "a simulation drives the displacement", 'write distance = "75 mm"')
         settle(scene, assembly, 1e-9 * push.way())
-        node = assembly.nodes[push.node]
-        loads = assembly.pattern or (BodyLoad(node.body, scene.push_direction(), 0.0, node.point),)
-        self._driver = LoadDriver(assembly.structure, loads, node, scene.push_direction(), push.way())
-        self._structure = assembly.structure
+        self._driver = LoadDriver(assembly, push.node, scene.push_direction(), push.way())
+        self._assembly = assembly
         self._stops: tuple[float, ...] = (0.0, *push.stops(), *((0.0,) if push.unload else ()))
         self.duration = WAY_TIME * (len(self._stops) - 1)
         self._turned_at = self.duration - WAY_TIME if push.unload else self.duration
@@ -61,7 +58,7 @@ class PrescribedPush:
         unloaded = time > self._turned_at and self._driver.factor * self.load <= 0.0
         self.displacement, self.load = self._driver.displacement, self._driver.factor
         # A joint that breaks leaves another structure than the one that is driven.
-        self.finished = time >= self.duration or unloaded or not self._structure.active.all()
+        self.finished = time >= self.duration or unloaded or not self._assembly.structure.active.all()
 
     def _wanted(self, time: float) -> float:
         """Where the node shall be at ``time`` [m]: evenly from stop to stop, but for a start without a jerk."""

@@ -11,9 +11,10 @@ import numpy as np
 import pymunk
 
 from scene import Scene
-from sim.body_loads import BodyLoad
+from sim.joint import DuctileJoint
 from sim.load_driver import LoadDriver
-from sim.members import JointPlace, assemble
+from sim.member_joints import JointPlace
+from sim.members import assemble
 from sim.model import Model
 from sim.second_order import SecondOrder
 from sim.settling import settle
@@ -40,9 +41,9 @@ class Push:
     load_at_distances : (n,) float
         Load at each of the distances that were given, where the node itself passed it [N].
     force : (k, joints, 3) float
-        N [N], Q [N] and M [N m] of the members' joints after each step.
+        N [N], Q [N] and M [N m] of the members' joints after each step; 0 before a joint was there.
     places : tuple of JointPlace
-        Where these joints are.
+        Where these joints are; those that there are in the end.
     bodies, joints : int
         Dynamic bodies, and joints of the members.
     steps : int
@@ -118,19 +119,17 @@ def push_over(
         When a step cannot be taken, too many find no solution, or the pushed node leaves its way.
     """
     assembly = assemble(scene, model, shapes=False)
-    structure, node = assembly.structure, assembly.nodes[scene.push.node]
-    loads = assembly.pattern or (BodyLoad(node.body, scene.push_direction(), 0.0, node.point),)
-    moments = SecondOrder(assembly, loads, second_order)
+    moments = SecondOrder(assembly, scene.push.node, scene.push_direction(), second_order)
     settle(scene, assembly, 1e-9 * scene.push.way(), moments.act)
     turns = [0, *(1 + np.flatnonzero(np.diff(np.sign(np.diff(distances))))).tolist(), len(distances) - 1]
     legs = [distances[a : b + 1] for a, b in itertools.pairwise(turns)]
     steps_a_leg = max(1, round(DURATION / model.dt))
     steps = steps_a_leg * len(legs)
     travel = np.concatenate([_eased(leg, steps_a_leg) for leg in legs])
-    driver = LoadDriver(structure, loads, node, scene.push_direction(), float(np.abs(distances).max()))
-    newton_before = structure.newton_steps
+    driver = LoadDriver(assembly, scene.push.node, scene.push_direction(), float(np.abs(distances).max()))
+    newton_before = assembly.structure.newton_steps
     displacement, load = np.empty(steps), np.empty(steps)
-    force = np.zeros((steps + 1, len(assembly.places), 3))
+    bearing: list[tuple[tuple[DuctileJoint, ...], np.ndarray]] = []
     seconds = 0.0
     for k in range(steps):
         driver.aim(travel[k], model.dt)
@@ -140,7 +139,8 @@ def push_over(
         seconds += time.thread_time() - started
         driver.read(model.dt)
         displacement[k], load[k] = driver.displacement, driver.factor
-        force[k + 1] = structure.force[: len(assembly.places)]
+        structure = assembly.structure
+        bearing.append((assembly.joints, structure.force))
         if structure.unconverged > _MOST_UNCONVERGED * steps:
             count = structure.unconverged
             raise SolverError(
@@ -157,7 +157,7 @@ def push_over(
         displacement=displacement,
         load=load,
         load_at_distances=np.concatenate(passed),
-        force=force,
+        force=_borne(assembly.joints[: len(assembly.places)], bearing),
         places=assembly.places,
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
         joints=len(assembly.places),
@@ -168,6 +168,18 @@ def push_over(
         unconverged=structure.unconverged,
         dissipated=float(structure.dissipated.sum()),
     )
+
+
+def _borne(joints: tuple[DuctileJoint, ...], bearing: list[tuple[tuple[DuctileJoint, ...], np.ndarray]]) -> np.ndarray:
+    """Forces on ``joints`` from those of all joints that there were after each step, (k, joints, 3)."""
+    force, column = np.zeros((len(bearing) + 1, len(joints), 3)), {joint: i for i, joint in enumerate(joints)}
+    k = 1
+    for there, steps in itertools.groupby(bearing, key=lambda step: step[0]):
+        own = [(i, column[joint]) for i, joint in enumerate(there) if joint in column]
+        rows = np.array([row for _, row in steps])
+        force[k : k + len(rows), [c for _, c in own]] = rows[:, [i for i, _ in own]]
+        k += len(rows)
+    return force
 
 
 def _eased(leg: np.ndarray, steps: int) -> np.ndarray:

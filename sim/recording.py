@@ -74,7 +74,7 @@ class Recorder:
     every : float
         Simulated time between two samples [s]; when steps are longer, every step is one.
     labels : mapping from DuctileJoint to str, optional
-        What to call joints; others are called by where they were made.
+        What to call joints; others are called by where they were made. Read in the end.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class Recorder:
         if not (math.isfinite(every) and every > 0.0):
             raise ValueError(f"a sample every {every} s: name a positive time")
         self._space, self._every = space, every
-        self._labels = dict(labels or {})
+        self._labels = {} if labels is None else labels
         self._now = self._step = 0.0
         # In the order in which they were first seen.
         self._bodies: dict[pymunk.Body, _Seen] = {}

@@ -17,46 +17,56 @@ of ω the value before the step in the formula above.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import pymunk
 
-from sim.body_loads import BodyLoad
+from sim.kernels import layout as at
 from sim.members import Assembly
 
 
 class SecondOrder:
-    """Second-order moments of the bodies of ``assembly``, which stands as it was built.
+    """Second-order moments of the bodies of ``assembly``.
 
     Parameters
     ----------
     assembly : Assembly
-    pattern : sequence of BodyLoad
-        What is driven, at a load factor of 1.
+    node : str
+        Which is pushed.
+    direction : (float, float)
+        Of the push.
     more : float
         g above [-].
     """
 
-    def __init__(self, assembly: Assembly, pattern: Sequence[BodyLoad], more: float) -> None:
-        self._structure, self._more = assembly.structure, more
-        self._dead_loads, self._pattern = assembly.dead_loads, pattern
+    def __init__(self, assembly: Assembly, node: str, direction: tuple[float, float], more: float) -> None:
+        self._assembly, self._node, self._direction, self._more = assembly, node, direction, more
+        self._own_inertia: dict[pymunk.Body, float] = {}
+        self._take()
+
+    def _take(self) -> None:
+        """Take the assembly as it is now."""
+        assembly = self._assembly
+        self._structure = assembly.structure
+        self._dead_loads, self._pattern = assembly.dead_loads, assembly.driven(self._node, self._direction)
         self._bodies = [b for b in self._structure.bodies if b.body_type == pymunk.Body.DYNAMIC]
         self._row = {body: i for i, body in enumerate(self._bodies)}
-        self._inertia = np.array([body.moment for body in self._bodies])
-        self._start = np.array([body.angle for body in self._bodies])
+        self._inertia = np.array([self._own_inertia.setdefault(body, body.moment) for body in self._bodies])
+        self._start = np.zeros(len(self._bodies))
         # Σ r · F of every body for a unit of N and Q in every joint; both turn with it. Tension pulls the first body
         # of a joint along its axis.
         self._of_joints = np.zeros((len(self._bodies), len(assembly.joints), 2))
         for k, joint in enumerate(assembly.joints):
-            axis = pymunk.Vec2d.from_polar(1.0, joint.direction)
-            for body, sign in ((joint.a, 1.0), (joint.b, -1.0)):
+            sides = ((joint.a, 1.0, at.ANCHOR_A, at.REST_A), (joint.b, -1.0, at.ANCHOR_B, at.REST_B))
+            for body, sign, anchor, rest in sides:
                 if body in self._row:
-                    arm = pymunk.Vec2d(*joint.at) - body.position
-                    self._of_joints[self._row[body], k] += sign * arm.dot(axis), sign * arm.dot(axis.perpendicular())
+                    self._start[self._row[body]] = joint.direction - joint.geometry[rest]
+                    arm = pymunk.Vec2d(*joint.geometry[anchor : anchor + 2]).rotated(-joint.geometry[rest])
+                    self._of_joints[self._row[body], k] += sign * arm.x, sign * arm.y
 
     def act(self, dt: float, dead_share: float = 1.0, factor: float = 0.0) -> None:
         """Act in the next step of ``dt`` [s], with a share of the dead loads and a load factor as in the last."""
+        if self._structure is not self._assembly.structure:
+            self._take()
         reach = np.einsum("bjk,jk->b", self._of_joints, self._structure.force[:, :2])
         for loads, share in ((self._dead_loads, dead_share), (self._pattern, factor)):
             for load in loads:

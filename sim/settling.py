@@ -49,6 +49,7 @@ def settle(
             way = pymunk.Vec2d(*support.way)
             support.body.velocity = (share - before) / SETTLING_STEP * way
             support.body.position = share * way
+        assembly.refine()
         before_step(SETTLING_STEP, share)
         assembly.step(SETTLING_STEP, share)
         speed = max(body.velocity.length for body in assembly.structure.bodies)

@@ -20,12 +20,13 @@ FRICTION = 0.5
 _types = itertools.count(0xD0C7)
 
 
-def add_box(body: pymunk.Body, corners: list[tuple[float, float]]) -> None:
-    """Give ``body`` a box with ``corners`` in world coordinates, as the body lies now; mass and moment stay."""
-    shape = pymunk.Poly(body, [body.world_to_local(corner) for corner in corners])
+def add_box(body: pymunk.Body, corners: list[tuple[float, float]]) -> pymunk.Shape:
+    """Give ``body`` a box with ``corners`` in its own coordinates; mass and moment stay."""
+    shape = pymunk.Poly(body, corners)
     shape.friction = FRICTION
     assert body.space is not None
     body.space.add(shape)
+    return shape
 
 
 def keep_neighbours_apart(space: pymunk.Space, bodies: list[pymunk.Body], depth: float) -> None:

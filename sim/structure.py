@@ -36,6 +36,8 @@ class Structure:
         At least one; those that already were in a structure keep their plastic state.
     tolerance : float
         Newton's method ends when the residual impulses, as velocities, are below this share of the bodies' own.
+    after : Structure, optional
+        Whose bodies these are, though its joints may all have been replaced.
 
     Raises
     ------
@@ -43,23 +45,29 @@ class Structure:
         When there is no joint, or the joints do not have the same time integration.
     """
 
+    #: The memory that the kernels work on.
+    tables: Tables
+    #: See the parameter.
+    tolerance: float
     #: Bodies of the structure: dynamic ones in order of elimination, then the others.
     bodies: tuple[pymunk.Body, ...]
     # While it is restored: what was saved, and how many joints are back.
     _saved: dict[str, Any] | None = None
     _restored = 0
 
-    def __init__(self, joints: Sequence[DuctileJoint], tolerance: float = _TOLERANCE) -> None:
+    def __init__(
+        self, joints: Sequence[DuctileJoint], tolerance: float = _TOLERANCE, after: Structure | None = None
+    ) -> None:
         if not joints:
             raise ValueError("a structure needs at least one joint")
         if len({joint.scheme for joint in joints}) > 1:
             raise ValueError("the joints of a structure must have the same time integration scheme")
         self._build(tuple(joints), tolerance)
-        self._take_over()
+        self._take_over(after)
 
     def _build(self, joints: tuple[DuctileJoint, ...], tolerance: float) -> None:
         """Find an order of elimination, and lay out the memory."""
-        self.joints, self._tolerance = joints, tolerance
+        self.joints, self.tolerance = joints, tolerance
         bodies = list(dict.fromkeys(body for joint in self.joints for body in (joint.a, joint.b)))
         moving = [body for body in bodies if body.body_type == pymunk.Body.DYNAMIC]
         held = [body for body in bodies if body.body_type != pymunk.Body.DYNAMIC]
@@ -67,33 +75,33 @@ class Structure:
         pairs = [(index[j.a], index[j.b]) for j in self.joints if j.a in index and j.b in index]
         pattern = minimum_degree(len(moving), pairs)
         self.bodies = tuple([moving[i] for i in pattern.order] + held)
-        self._tables = Tables(joints, self.bodies, pattern, tolerance)
-        self._control = self._tables.control
+        self.tables = Tables(joints, self.bodies, pattern, tolerance)
+        self._control = self.tables.control
         self._control[[at.NOTICE, at.KEY]] = listen(self)
-        self._settings, self._result = self._tables[at.SETTINGS], self._tables[at.RESULT]
+        self._settings, self._result = self.tables[at.SETTINGS], self.tables[at.RESULT]
 
-    def _take_over(self) -> None:
+    def _take_over(self, after: Structure | None) -> None:
         """Make the joints this structure's, with the plastic state they had in another.
 
         Bodies that were in another structure, or are joined to one or to a kinematic body, keep moving as they do; a
         structure that is new and tied to the world at most begins to move with its first step.
         """
-        olds = {joint.structure: None for joint in self.joints if joint.structure is not None}
+        olds = dict.fromkeys([after, *(joint.structure for joint in self.joints)])
         moved: dict[pymunk.Body, np.ndarray] = {}
-        for old in olds:
+        for old in filter(None, olds):
             moved |= dict(zip(old.bodies, old._let_go(), strict=True))
-        last = self._tables[at.LAST_VELOCITY]
+        last = self.tables[at.LAST_VELOCITY]
         if moved or any(body.body_type == pymunk.Body.KINEMATIC for body in self.bodies):
             for i, body in enumerate(self.bodies):
                 last[i] = moved.get(body, (*body.velocity, body.angular_velocity))
         for i, joint in enumerate(self.joints):
             if joint.structure is not None:
-                before, k = joint.structure._tables, joint.index
+                before, k = joint.structure.tables, joint.index
                 self._result[i] = before[at.RESULT][k]
-                self._tables[at.ACTIVE][i] = before[at.ACTIVE][k]
-                self._tables.state(i)[:] = before.state(k)
+                self.tables[at.ACTIVE][i] = before[at.ACTIVE][k]
+                self.tables.state(i)[:] = before.state(k)
             self._adopt(i)
-        ledger = self._tables[at.LEDGER]
+        ledger = self.tables[at.LEDGER]
         mass = [(b.mass, b.mass, b.moment) for b in self.bodies if b.body_type == pymunk.Body.DYNAMIC]
         moving = last[: len(mass)]
         ledger[at.LEDGER_KINETIC] = 0.5 * np.sum(np.array(mass) * moving**2, where=moving != 0.0)
@@ -111,11 +119,11 @@ class Structure:
         In a step that has begun, the contacts go back to Chipmunk, and impulses since the last step have been seen to.
         """
         if not self._control[at.LEADER]:
-            return self._tables[at.LAST_VELOCITY]
+            return self.tables[at.LAST_VELOCITY]
         self._control[at.LEADER] = 0
-        for place in self._tables[at.PLACES][: self._control[at.CONTACTS]]:
+        for place in self.tables[at.PLACES][: self._control[at.CONTACTS]]:
             chipmunk.hand_back(int(place[at.WHERE]))
-        return self._tables[at.START_VELOCITY]
+        return self.tables[at.START_VELOCITY]
 
     def __getstate__(self) -> dict[str, Any]:
         """What is needed to go on from here: joints, and what they and their space do not say."""
@@ -123,8 +131,8 @@ class Structure:
         neighbours = self.bodies if space is None else tuple(space.bodies)
         return {
             "joints": self.joints,
-            "tolerance": self._tolerance,
-            "kept": self._tables.kept(),
+            "tolerance": self.tolerance,
+            "kept": self.tables.kept(),
             "raw": [(body, chipmunk.save_body(body)) for body in neighbours],
         }
 
@@ -146,7 +154,7 @@ class Structure:
         for body, raw in state["raw"]:
             chipmunk.restore_body(body, raw)
         self._build(tuple(state["joints"]), state["tolerance"])
-        self._tables.restore(state["kept"])
+        self.tables.restore(state["kept"])
         for i, joint in enumerate(self.joints):
             asks = joint.pre_solve is not None
             self._adopt(i)
@@ -162,11 +170,11 @@ class Structure:
             When ``law`` is of another kind or size.
         """
         values = law.parameters()
-        parameters = self._tables.parameters(joint % len(self.joints))
+        parameters = self.tables.parameters(joint % len(self.joints))
         if type(law) is not type(self.joints[joint].law) or len(values) != len(parameters):
             raise ValueError(f"joint {joint} has a law of another kind or size")
         parameters[:] = values
-        self._tables[at.STIFFNESS][joint] = law.elastic_tangent()
+        self.tables[at.STIFFNESS][joint] = law.elastic_tangent()
         self.joints[joint].law = law
 
     def drive(self, pattern: np.ndarray, stiffness: float, gap: float) -> None:
@@ -181,15 +189,15 @@ class Structure:
         gap : float
             Wanted displacement at the end of the step, less the present one, Σ pattern · movement [N m].
         """
-        self._tables.make_pattern()
-        self._tables[at.PATTERN][:] = pattern
+        self.tables.make_pattern()
+        self.tables[at.PATTERN][:] = pattern
         self._settings[at.SPREAD_STIFFNESS] = stiffness
         self._settings[at.SPREAD_GAP] = gap
 
     @property
     def pattern_response(self) -> np.ndarray:
         """Change of the bodies' velocities for a unit impulse of the driven pattern, joints included, (bodies, 3)."""
-        return self._tables[at.IMAGE].copy()
+        return self.tables[at.IMAGE].copy()
 
     @property
     def load_factor(self) -> float:
@@ -207,6 +215,11 @@ class Structure:
         self._settings[[at.BETA, at.DELTA]] = scheme
         for joint in self.joints:
             joint.scheme = scheme
+
+    @property
+    def step(self) -> float:
+        """The last step [s]; 0 before the first."""
+        return float(self._settings[at.STEP])
 
     @property
     def deformation(self) -> np.ndarray:
@@ -234,7 +247,7 @@ class Structure:
     @property
     def elastic_deformation(self) -> np.ndarray:
         """Deformation that the force explains without viscous damping, (n, 3) [m, m, rad]; 0 in a broken joint."""
-        upper, damping = self._tables[at.STIFFNESS], self._tables[at.DAMPING]
+        upper, damping = self.tables[at.STIFFNESS], self.tables[at.DAMPING]
         rates = np.array([joint.rate() for joint in self.joints]) if damping.any() else np.zeros((len(upper), 3))
         # Where a joint has no stiffness it has no force either.
         stiffness = upper[:, [0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(-1, 3, 3)
@@ -245,9 +258,9 @@ class Structure:
     def yielding(self) -> np.ndarray:
         """Whether the axial, shear and rotational part of each joint gave way in the last step, (n, 3) bool."""
         reach = self._settings[at.STEP] * (self._settings[at.BETA] + self._settings[at.DELTA])
-        viscous = self._tables[at.DAMPING] / reach if reach > 0.0 else 0.0
-        tangent = self._tables[at.RESPONSE][:, [at.TANGENT, at.TANGENT + 3, at.TANGENT + 5]] - viscous
-        elastic = self._tables[at.STIFFNESS][:, [0, 3, 5]]
+        viscous = self.tables[at.DAMPING] / reach if reach > 0.0 else 0.0
+        tangent = self.tables[at.RESPONSE][:, [at.TANGENT, at.TANGENT + 3, at.TANGENT + 5]] - viscous
+        elastic = self.tables[at.STIFFNESS][:, [0, 3, 5]]
         yields: np.ndarray = (tangent < (1.0 - 1e-9) * elastic) & self.active[:, None] & (reach > 0.0)
         return yields
 
@@ -274,12 +287,12 @@ class Structure:
     @property
     def active(self) -> np.ndarray:
         """Whether each joint still holds, (n,) bool; not when it is broken or was taken out of the space."""
-        return self._tables[at.ACTIVE].astype(bool)
+        return self.tables[at.ACTIVE].astype(bool)
 
     @property
     def energy(self) -> Energy:
         """Ledger of the structure since it was built [J]."""
-        return Energy(*self._tables[at.LEDGER][: at.LEDGER_TO_COME].tolist())
+        return Energy(*self.tables[at.LEDGER][: at.LEDGER_TO_COME].tolist())
 
     @property
     def residual(self) -> float:
@@ -311,7 +324,7 @@ class Structure:
             return
         if self._control[at.MISSED] > 0:
             # Chipmunk solved these by itself in this step; in the next there is room for them.
-            self._tables.make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
+            self.tables.make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
         if self._control[at.BROKE] == 0:
             return
         for joint in self.joints:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import pymunk
 
@@ -68,6 +68,10 @@ class World:
         By the name of the joint, or of the member from its start to its end.
     broken : list of (float, str)
         Times at which joints broke [s], and what they are called.
+    refined : list of (float, str)
+        Times at which members were refined [s], and their names; 0 for those that were before anything moved.
+    labels : dict[DuctileJoint, str]
+        What joints are called, those too that there are no more.
     """
 
     def __init__(
@@ -105,6 +109,8 @@ class World:
             scheme=scheme,
             hinge_length=run.hinge_length,
             members=_models(scene, run),
+            refine_at=run.refine_at,
+            coarse_joints=run.coarse_joints,
         )
         self._assembly = self._add_members(model)
         self._loads = None if self._assembly is None else LoadProgramme(scene, self._assembly)
@@ -112,10 +118,13 @@ class World:
         self._start_motion()
         self.duration = self._duration(run, duration)
         self._continuous = [self.bodies[name] for name, body in scene.bodies.items() if body.continuous]
-        self.labels = {joint: label for label, joint in self._labelled()}
+        self.labels: dict[DuctileJoint, str] = {}
         self.broken: list[tuple[float, str]] = []
-        for joint in self.labels:
-            joint.on_break = self._note_break
+        self.refined: list[tuple[float, str]] = []
+        self._take_joints(scene.members)
+        self._label(self.joints)
+        if self._assembly is not None:
+            self.refined += [(self.time, name) for name in self._assembly.refined]
         self._contacts: list[ContactWatch] = []
         self._watches = {name: Watch(measure, self) for name, measure in scene.measures.items()}
 
@@ -128,11 +137,17 @@ class World:
         for span in assembly.spans:
             for shape in span.body.shapes:
                 shape.friction = scene.members[span.member].friction
-        for name in scene.members:
-            self.joints[name] = tuple(
-                joint for place, joint in zip(assembly.places, assembly.joints, strict=False) if place.member == name
-            )
         return assembly
+
+    def _take_joints(self, members: Collection[str]) -> None:
+        """Take the joints of some members as they are now."""
+        if self._assembly is None:
+            return
+        own: dict[str, list[DuctileJoint]] = {name: [] for name in members}
+        for place, joint in zip(self._assembly.places, self._assembly.joints, strict=False):
+            if place.member in own:
+                own[place.member].append(joint)
+        self.joints |= {name: tuple(joints) for name, joints in own.items()}
 
     def _start_push(self) -> PrescribedPush | None:
         if self.scene.pushed is None or self._assembly is None:
@@ -162,18 +177,31 @@ class World:
             )
         return float(length)
 
-    def _labelled(self) -> list[tuple[str, DuctileJoint]]:
-        return [
-            (name if name in self.scene.joints else f"{name} {i}", joint)
-            for name, joints in self.joints.items()
-            for i, joint in enumerate(joints, 1)
-        ]
+    def _label(self, names: Iterable[str]) -> None:
+        """Call the joints of that name, or of that member, by it, and be told when they break."""
+        for name in names:
+            for i, joint in enumerate(self.joints[name], 1):
+                self.labels[joint] = name if name in self.scene.joints else f"{name} {i}"
+                joint.on_break = self._note_break
+
+    def _refine(self) -> None:
+        """Refine the members that are due."""
+        names = self._assembly.refine() if self._assembly is not None else ()
+        if not names:
+            return
+        coarse = [joint for name in names for joint in self.joints[name]]
+        self._take_joints(names)
+        for joint in coarse:
+            self.labels[joint] += " of the coarse member"
+        self._label(names)
+        self.refined += [(self.time, name) for name in names]
 
     def _note_break(self, joint: DuctileJoint) -> None:
         self.broken.append((self.time + self.part, self.labels[joint]))
 
     def step(self) -> None:
-        """One step of `dt`, or one of the parts that it is cut into."""
+        """One step of `dt`, or one of the parts that it is cut into; members that are due are refined before it."""
+        self._refine()
         if self._parts_left == 0:
             parts = self._parts()
             self.part, self._parts_left = self.dt / parts, parts

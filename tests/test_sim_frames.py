@@ -12,7 +12,6 @@ from capacity import Interaction
 from fem_reference import pushover
 from scene import Scene
 from sim import Model, SolverError
-from sim.body_loads import BodyLoad
 from sim.load_driver import LoadDriver
 
 FINE = Model("lobatto", 9, "fibre", 16)
@@ -130,7 +129,7 @@ def test_a_push_whose_node_runs_away_is_stopped_and_told() -> None:
     scene = two_storeys(0.01, "large")
     assembly = sim.assemble(scene, Model("lobatto", 3, "elastic-plastic"), shapes=False)
     node, way = assembly.nodes[scene.push.node], scene.push_direction()
-    driver = LoadDriver(assembly.structure, [BodyLoad(node.body, way, 0.0, node.point)], node, way, reach=0.1)
+    driver = LoadDriver(assembly, scene.push.node, way, reach=0.1)
     driver.aim(0.001, 1 / 60)
     assembly.step(1 / 60)
     driver.read(1 / 60)

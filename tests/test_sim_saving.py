@@ -110,7 +110,7 @@ def test_a_joint_takes_less_than_two_kilobytes() -> None:
     """All that the solver allocates for a chain: what its arrays hold for a thousand joints more."""
     sizes = []
     for count in (200, 1200):
-        tables = chain(count).structure._tables
+        tables = chain(count).structure.tables
         own = [value for value in vars(tables).values() if isinstance(value, np.ndarray)]
         sizes.append(sum(array.nbytes for array in [*tables._arrays.values(), *own]))
     assert (sizes[1] - sizes[0]) / 1000 < 2000.0

@@ -1,0 +1,67 @@
+"""What a structure takes over from one some of whose joints were replaced."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.joint import DuctileJoint
+from sim.kernels import layout as at
+from sim.structure import Structure
+
+
+@dataclass(frozen=True)
+class Heir:
+    """What a new joint begins with.
+
+    Attributes
+    ----------
+    state : (n,) float
+        Of its law.
+    result : (words,) float
+        As the kernels leave it after a step; see `sim.kernels.layout`.
+    """
+
+    state: np.ndarray
+    result: np.ndarray
+
+
+def external_force(structure: Structure) -> np.ndarray:
+    """Forces x, y [N] and moments [N m] on the bodies from outside in the last step, contacts aside, (n, 3)."""
+    tables = structure.tables
+    impulse = tables[at.EXTERNAL].copy()
+    if tables.control[at.SPREAD]:
+        impulse += tables[at.SETTINGS][at.SPREAD_IMPULSE] * tables[at.PATTERN]
+    force: np.ndarray = impulse / tables[at.SETTINGS][at.STEP]
+    return force
+
+
+def succeed(
+    old: Structure, joints: Sequence[DuctileJoint], heirs: Mapping[DuctileJoint, Heir], work: float
+) -> Structure:
+    """A structure of ``joints`` that goes on where ``old`` ended.
+
+    Its ledger begins with the energy that passes on, and with the ``work`` [J] done on the pieces as they were put to
+    their new places. What does not arrive is numerical.
+    """
+    regroup = any(joint.pre_solve is not None for joint in joints if joint not in heirs)
+    passed_on = old.energy.kinetic + old.energy.elastic
+    new = Structure([joint for joint in joints if not joint.broken], old.tolerance, old)
+    tables, before = new.tables, old.tables
+    for joint, heir in heirs.items():
+        if joint.structure is new:
+            tables.state(joint.index)[:] = heir.state
+            tables[at.RESULT][joint.index] = heir.result
+    tables[at.SETTINGS][:] = before[at.SETTINGS]
+    for count in (at.NEWTON_STEPS, at.UNCONVERGED):
+        tables.control[count] = before.control[count]
+    ledger = tables[at.LEDGER]
+    ledger[at.LEDGER_ELASTIC] = 0.5 * tables[at.RESULT][:, [at.RESULT_BEFORE, at.RESULT_ELASTIC]].sum()
+    ledger[at.LEDGER_TO_COME] = before[at.LEDGER][at.LEDGER_TO_COME]
+    ledger[at.LEDGER_EXTERNAL] = passed_on + work
+    ledger[at.LEDGER_NUMERICAL] = passed_on + work - ledger[at.LEDGER_KINETIC] - ledger[at.LEDGER_ELASTIC]
+    if regroup:  # one of them broke, and the others may have come apart
+        new.joints[0].ask_for_structure()
+    return new

@@ -58,6 +58,19 @@ CONSTRAINT_NEXT_A, CONSTRAINT_NEXT_B = 4, 5
 CONTROL = 13
 CONSTRAINT_WORDS = 15
 
+#: Where Chipmunk's own constraints keep the impulse of the last step, with which the next one starts: first word, and
+#: how many.
+CACHED_IMPULSE: dict[type[pymunk.Constraint], tuple[int, int]] = {
+    pymunk.PinJoint: (25, 1),
+    pymunk.SlideJoint: (26, 1),
+    pymunk.PivotJoint: (25, 2),
+    pymunk.GrooveJoint: (32, 2),
+    pymunk.RotaryLimitJoint: (17, 1),
+    pymunk.RatchetJoint: (18, 1),
+    pymunk.GearJoint: (18, 1),
+    pymunk.SimpleMotor: (15, 1),
+}
+
 
 class IncompatiblePymunk(ImportError):
     """The installed pymunk lays its structs out in another way."""
@@ -121,6 +134,12 @@ def restore_body(body: pymunk.Body, saved: np.ndarray) -> None:
     raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1] = saved[: BODY_WORDS - MASS], saved[BODY_WORDS - MASS :]
 
 
+def cached_impulse(constraint: pymunk.Constraint) -> np.ndarray:
+    """Impulse of one of Chipmunk's own constraints in the last step, to be changed in place; springs keep none."""
+    first, count = CACHED_IMPULSE.get(type(constraint), (0, 0))
+    return words(address(constraint._constraint), first + count)[first:]
+
+
 def verify() -> None:
     """Check every offset against the installed pymunk.
 
@@ -161,8 +180,26 @@ def verify() -> None:
     space.remove(joint)
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == 0
     fits &= bodies[CONSTRAINT_BODY_A] == body_address(body) and bodies[_BODY_B] == body_address(other)
+    for constraint in _one_of_each(body, other):
+        cached_impulse(constraint)[:] = 47.0
+        fits &= abs(constraint.impulse - math.hypot(*cached_impulse(constraint))) <= 1e-12
     if not fits:
         raise IncompatiblePymunk(
             f"pymunk {pymunk.version} lays out its bodies or constraints in a way that sim does not know; "
             f"install version {KNOWN_VERSIONS}: pip install 'pymunk>=7.3,<7.4'"
         )
+
+
+def _one_of_each(a: pymunk.Body, b: pymunk.Body) -> list[pymunk.Constraint]:
+    """Every kind of constraint with a cached impulse."""
+    here = (0.0, 0.0)
+    return [
+        pymunk.PinJoint(a, b),
+        pymunk.SlideJoint(a, b, here, here, 0.0, 1.0),
+        pymunk.PivotJoint(a, b, here, here),
+        pymunk.GrooveJoint(a, b, here, (1.0, 0.0), here),
+        pymunk.RotaryLimitJoint(a, b, 0.0, 1.0),
+        pymunk.RatchetJoint(a, b, 0.0, 1.0),
+        pymunk.GearJoint(a, b, 0.0, 1.0),
+        pymunk.SimpleMotor(a, b, 1.0),
+    ]

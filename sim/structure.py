@@ -15,6 +15,7 @@ from sim.kernels import layout as at
 from sim.laws import Law
 from sim.notices import listen
 from sim.ordering import minimum_degree
+from sim.space_state import SpaceState
 from sim.tables import Tables
 
 _TOLERANCE = 1e-9
@@ -127,13 +128,11 @@ class Structure:
 
     def __getstate__(self) -> dict[str, Any]:
         """What is needed to go on from here: joints, and what they and their space do not say."""
-        space = self.bodies[0].space
-        neighbours = self.bodies if space is None else tuple(space.bodies)
         return {
             "joints": self.joints,
             "tolerance": self.tolerance,
             "kept": self.tables.kept(),
-            "raw": [(body, chipmunk.save_body(body)) for body in neighbours],
+            "space": SpaceState.of(self.bodies),
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -151,8 +150,7 @@ class Structure:
         if state is None or self._restored < len(state["joints"]):
             return
         del self._saved, self._restored
-        for body, raw in state["raw"]:
-            chipmunk.restore_body(body, raw)
+        state["space"].restore()
         self._build(tuple(state["joints"]), state["tolerance"])
         self.tables.restore(state["kept"])
         for i, joint in enumerate(self.joints):

@@ -141,6 +141,7 @@ class Tables:
             self.make_pattern()
         self._states[:] = kept["states"]
         self.control[list(_KEPT_CONTROL)] = kept["control"]
+        self.make_room(int(self.control[at.ROOM]))
         for word, array in self._arrays.items():
             if str(word) in kept:
                 array[:] = kept[str(word)]
@@ -149,7 +150,7 @@ class Tables:
 # The plastic state is kept beside these. Gradient and response of the last step weigh the bodies of the next.
 _OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.JACOBIAN, at.RESPONSE, at.RESULT)
 _KEPT = (*_OF_JOINTS, at.SETTINGS, at.LEDGER, at.LAST_VELOCITY, at.LAST_POSITION, at.SHIFT)
-_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING)
+_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.ROOM)
 
 
 def _joined(pieces: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

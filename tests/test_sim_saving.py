@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pymunk
 import pytest
-from hard_cases import Case, chain, law, rests, struck
+from hard_cases import Case, chain, falls_on_the_ground, law, rests, struck
 
 from sim import AVERAGE_ACCELERATION, DuctileJoint, Limits
 
@@ -69,13 +69,30 @@ def test_what_a_structure_has_been_through_is_saved() -> None:
     assert (new.newton_steps, new.residual) == (old.newton_steps, old.residual)
 
 
-def test_contacts_go_on_nearly() -> None:
-    """pymunk saves contacts, but not which of two shapes comes first: some start cold, 1e-4 m/s off and no more."""
-    case = rests(500.0, 3.12)
+def bouncing() -> Case:
+    return falls_on_the_ground(0.9)
+
+
+def swinging() -> Case:
+    """Stock constraints beside the joints: what hangs from the bar's tip, and a motor."""
+    case = chain(6)
+    tip = case.bodies[-1]
+    a, b = pymunk.Body(2.0, 0.1), pymunk.Body(3.0, 0.2)
+    x, y = tip.position
+    a.position, b.position = (x, y - 0.3), (x + 0.2, y - 0.5)
+    case.space.add(a, b, pymunk.PivotJoint(tip, a, tip.position), pymunk.SlideJoint(a, b, (0, 0), (0, 0), 0.1, 0.3))
+    case.space.add(pymunk.GearJoint(tip, a, 0.0, 1.0), pymunk.SimpleMotor(a, b, 2.0))
+    return case
+
+
+@pytest.mark.parametrize("build", [lambda: rests(500.0, 3.12), bouncing, lambda: struck(10.0), swinging])
+def test_contacts_and_stock_constraints_go_on_to_the_last_bit(build: type[Case]) -> None:
+    case = build()
     trajectory(case.space, 40)
-    resumed = pickle.loads(pickle.dumps(case.space))
-    on, again = (np.frombuffer(trajectory(space, 2)) for space in (case.space, resumed))
-    np.testing.assert_allclose(again, on, atol=1e-4)
+    saved, copied = pickle.dumps(case.space), case.space.copy()
+    on = trajectory(case.space)
+    assert trajectory(pickle.loads(saved)) == on
+    assert trajectory(copied) == on
 
 
 def test_joints_that_no_step_has_seen_can_be_saved() -> None:
@@ -89,21 +106,29 @@ def test_joints_that_no_step_has_seen_can_be_saved() -> None:
 
 
 RUN = """
-import hashlib
+import hashlib, pickle, sys
 from hard_cases import rests, struck
 from test_sim_saving import breaking, trajectory
-for case in (breaking(), rests(500.0, 3.12), struck(10.0)):
-    print(hashlib.sha256(trajectory(case.space)).hexdigest())
+spaces = [case.space for case in (breaking(), rests(500.0, 3.12), struck(10.0))]
+for space in [*spaces, pickle.load(sys.stdin.buffer)]:
+    print(hashlib.sha256(trajectory(space)).hexdigest())
 """
 
 
 def test_another_process_comes_to_the_same_bytes() -> None:
-    here = Path(__file__).parent
+    """From the start, and from where a run was saved."""
+    begun = bouncing().space
+    trajectory(begun, 40)
     out = subprocess.run(
-        [sys.executable, "-c", RUN], cwd=here, check=True, capture_output=True, text=True, timeout=300
-    ).stdout.split()
-    cases = (breaking(), rests(500.0, 3.12), struck(10.0))
-    assert out == [hashlib.sha256(trajectory(case.space)).hexdigest() for case in cases]
+        [sys.executable, "-c", RUN],
+        cwd=Path(__file__).parent,
+        input=pickle.dumps(begun),
+        check=True,
+        capture_output=True,
+        timeout=300,
+    ).stdout.decode()
+    spaces = (breaking().space, rests(500.0, 3.12).space, struck(10.0).space, begun)
+    assert out.split() == [hashlib.sha256(trajectory(space)).hexdigest() for space in spaces]
 
 
 def test_a_joint_takes_less_than_two_kilobytes() -> None:

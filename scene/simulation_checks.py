@@ -16,6 +16,9 @@ from scene.vehicles import Vehicle
 
 #: What a measure names for all joints of a scene.
 ALL_JOINTS = "joints"
+# [m/s]
+_LIGHT = 299_792_458.0
+_ROUNDING = 1e-9
 
 
 def check_simulation(scene: Scene) -> None:
@@ -78,6 +81,7 @@ def _check_programme(scene: Scene, simulation: Simulation) -> None:
 
 
 def _check_ground(ground: Ground, place: str) -> None:
+    _check_restitution(ground.restitution, place)
     _positive(ground.thickness, f"{place}.thickness", '"1 m"')
     if len(ground.points) < 2:
         raise InputError(f"{place}.points", "a line has at least two points", "add one")
@@ -97,8 +101,20 @@ def _check_body(body: Body, place: str) -> None:
     _check_shapes(body.shapes, f"{place}.shapes")
     for key in ("mass", "density", "depth", "moment_of_inertia"):
         _positive(getattr(body, key), f"{place}.{key}")
+    _check_speed(body.velocity, f"{place}.velocity")
+    _check_restitution(body.restitution, place)
     if body.fixed and (any(body.velocity) or body.spin):
         raise InputError(f"{place}.fixed", "a fixed body does not move", "take its velocity and spin out")
+
+
+def _check_speed(velocity: tuple[float, float], place: str) -> None:
+    if math.hypot(*velocity) > _LIGHT:
+        raise InputError(place, "it is faster than light", 'write a speed such as "5 m/s"')
+
+
+def _check_restitution(restitution: float, place: str) -> None:
+    if restitution > 1.0:
+        raise InputError(f"{place}.restitution", "it is greater than 1: impacts would give energy", "write 0 to 1")
 
 
 def _check_shapes(shapes: tuple[Shape, ...], place: str) -> None:
@@ -160,6 +176,8 @@ def _check_vehicle(vehicle: Vehicle, place: str) -> None:
     _check_shapes(vehicle.chassis, f"{place}.chassis")
     for key in ("mass", "density", "depth"):
         _positive(getattr(vehicle, key), f"{place}.{key}")
+    _check_speed(vehicle.velocity, f"{place}.velocity")
+    _check_restitution(vehicle.restitution, place)
     if not vehicle.wheels:
         raise InputError(f"{place}.wheels", "it has no wheel", "add [[" + place + ".wheels]]")
     for i, wheel in enumerate(vehicle.wheels):
@@ -186,8 +204,20 @@ def _check_measure(scene: Scene, measure: Measure, place: str) -> None:
     if measure.of not in known:
         what = f'nothing with a {measure.quantity} is called "{measure.of}"'
         raise InputError(f"{place}.of", what, _known(measure.of, known, "names"))
+    _check_times(scene, measure, place)
     if measure.take == "laps" and not any(vehicle.lap is not None for vehicle in scene.vehicles.values()):
         raise InputError(f"{place}.take", "no vehicle drives laps", "add [vehicles.NAME.lap]")
+
+
+def _check_times(scene: Scene, measure: Measure, place: str) -> None:
+    ends = [program.duration for program in (scene.simulation, scene.motion) if program is not None]
+    end = next((float(duration) for duration in ends if duration is not None), math.inf)
+    for key in ("at", "since", "until"):
+        time = getattr(measure, key)
+        if time is not None and (time < 0.0 or (key != "until" and time > end * (1.0 + _ROUNDING))):
+            raise InputError(f"{place}.{key}", f"{time:g} s is not within the run", f"write a time from 0 to {end:g} s")
+    if measure.since is not None and measure.until is not None and measure.until < measure.since:
+        raise InputError(f"{place}.until", "it is before `since`", "write a later time")
 
 
 def _known(name: str, names: Collection[str], what: str) -> str:

@@ -50,7 +50,7 @@ def first_touches(space: pymunk.Space, bodies: Iterable[pymunk.Body], dt: float)
             touch
             for own in body.shapes
             for other in space.bb_query(_swept(own, dt), own.filter)
-            if other.body is not body and other.body is not None and not _pass(body, other.body)
+            if other.body is not body and other.body is not None and not pass_each_other(body, other.body)
             for touch in (_first_touch(own, other, dt, space.collision_slop),)
             if touch is not None
         ]
@@ -71,7 +71,7 @@ def hold_back(touch: Touch, dt: float) -> None:
     body.angle -= body.angular_velocity * left
 
 
-def _pass(a: pymunk.Body, b: pymunk.Body) -> bool:
+def pass_each_other(a: pymunk.Body, b: pymunk.Body) -> bool:
     """Whether a joint keeps the two from colliding."""
     return any(not joint.collide_bodies and b in (joint.a, joint.b) for joint in a.constraints)
 
@@ -111,7 +111,7 @@ def _first_touch(own: pymunk.Shape, other: pymunk.Shape, dt: float, slop: float)
         return None
     time = 0.0
     for _ in range(_MOST_ADVANCES):
-        distance = shapely.distance(_moved(own, time), _moved(other, time)) - _rounding(own) - _rounding(other)
+        distance = shapely.distance(moved(own, time), moved(other, time)) - rounding(own) - rounding(other)
         if distance <= 0.01 * slop:
             if distance <= 0.0 and time == 0.0:
                 return None
@@ -127,7 +127,7 @@ def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[float
     a, b = own.body, other.body
     assert a is not None
     assert b is not None
-    here, there = shapely.get_coordinates(shapely.shortest_line(_moved(own, time), _moved(other, time)))
+    here, there = shapely.get_coordinates(shapely.shortest_line(moved(own, time), moved(other, time)))
     arm = pymunk.Vec2d(*there) - (b.local_to_world(b.center_of_gravity) + b.velocity * time)
     velocity = a.velocity - b.velocity - b.angular_velocity * arm.perpendicular()
     normal = pymunk.Vec2d(*(there - here)).normalized()
@@ -137,12 +137,13 @@ def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[float
     return closing.x, closing.y
 
 
-def _rounding(shape: pymunk.Shape) -> float:
+def rounding(shape: pymunk.Shape) -> float:
+    """Radius of a circle or of a shape's corners [m]."""
     assert isinstance(shape, pymunk.Circle | pymunk.Poly | pymunk.Segment)
     return shape.radius
 
 
-def _moved(shape: pymunk.Shape, time: float) -> BaseGeometry:
+def moved(shape: pymunk.Shape, time: float) -> BaseGeometry:
     """The shape, without its rounding, where its body will be in ``time``."""
     body = shape.body
     assert body is not None

@@ -21,12 +21,15 @@ from sim.measures import Watch
 from sim.members import Assembly, assemble
 from sim.model import MemberModel, Model
 from sim.motion import set_going
+from sim.overlaps import check_apart
 from sim.prescribed_push import PrescribedPush
 from sim.settling import settle
 from sim.vehicles import Car, add_vehicles
 
 # Way per step that counts as rest before a motion [m].
 _REST = 1e-12
+# A run of more would take days.
+_MOST_STEPS = 1e9
 
 
 class World:
@@ -45,7 +48,7 @@ class World:
     Raises
     ------
     InputError
-        When there is no programme to follow, or a push shall have another duration.
+        When there is no programme to follow, a push shall have another duration, or bodies overlap from the start.
     SolverError
         When a scene that is pushed or set in motion does not come to rest under its own weight.
 
@@ -114,6 +117,7 @@ class World:
         )
         self._assembly = self._add_members(model)
         self._loads = None if self._assembly is None else LoadProgramme(scene, self._assembly)
+        check_apart(space, self._loose_places(), self._piece_places())
         self.push = self._start_push()
         self._start_motion()
         self.duration = self._duration(run, duration)
@@ -127,6 +131,16 @@ class World:
             self.refined += [(self.time, name) for name in self._assembly.refined]
         self._contacts: list[ContactWatch] = []
         self._watches = {name: Watch(measure, self) for name, measure in scene.measures.items()}
+
+    def _loose_places(self) -> dict[pymunk.Body, str]:
+        """Bodies and parts of vehicles, and where the scene file has them."""
+        bodies = {body: f"bodies.{name}" for name, body in self.bodies.items()}
+        return bodies | {body: f"vehicles.{name}" for name, car in self.cars.items() for body in car.bodies}
+
+    def _piece_places(self) -> dict[pymunk.Body, str]:
+        """Pieces of members, likewise; those at nodes by one of the members there."""
+        spans = () if self._assembly is None else self._assembly.spans
+        return {span.body: f"members.{span.member}" for span in spans}
 
     def _add_members(self, model: Model) -> Assembly | None:
         scene = self.scene
@@ -175,6 +189,9 @@ class World:
             raise InputError(
                 "dt", f"a step of {self.dt:g} s is longer than the whole run of {length:g} s", "shorten it"
             )
+        if length > _MOST_STEPS * self.dt:
+            fault = f"{length:g} s are more than {_MOST_STEPS:.0e} steps of {self.dt:g} s"
+            raise InputError("duration", fault, "make it shorter, or the steps longer")
         return float(length)
 
     def _label(self, names: Iterable[str]) -> None:

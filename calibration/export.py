@@ -6,7 +6,6 @@ import csv
 import io
 import math
 from dataclasses import asdict
-from importlib.metadata import version
 from typing import Any
 
 import numpy as np
@@ -14,16 +13,10 @@ import pymunk
 
 from calibration.trials import Trial
 from calibration.tuning import Calibration
+from calibration.versions import versions
 from fem_reference import Pushover
 from scene import Scene
 from sim import DuctileJoint, Model, assemble
-
-_LIBRARIES = ("ductile-joints", "numpy", "scipy", "scikit-fem", "pymunk", "numba")
-
-
-def versions() -> dict[str, str]:
-    """Versions of everything that the numbers depend on."""
-    return {name: version(name) for name in _LIBRARIES}
 
 
 def settings(model: Model) -> dict[str, Any]:
@@ -85,6 +78,7 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
         "target_error": result.target_error,
         "target_met": result.target_met,
         "limit": result.limit,
+        "remarks": list(result.remarks),
         "versions": versions(),
     }
 

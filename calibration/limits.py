@@ -7,14 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from calibration.trials import Failure, Trial
+from fem_reference import PushAnswer, Pushover
 from scene import Scene
-from sim import Model
+from sim import Model, Push
 
 #: An error that falls by less than this share from one model to the next does not fall.
 _LEVEL = 0.1
 
 
-def what_limits(scene: Scene, best: Trial, trials: Sequence[Trial], failures: Sequence[Failure]) -> str:
+def what_limits(best: Trial, trials: Sequence[Trial], failures: Sequence[Failure]) -> str:
     """What the best model's error does not fall for, judged by the models beside it."""
     causes = []
     for what, key in (("joints", _but_joints), ("fibres", _but_fibres), ("steps", _but_steps)):
@@ -30,20 +31,23 @@ def what_limits(scene: Scene, best: Trial, trials: Sequence[Trial], failures: Se
             )
     if not causes:
         causes.append("neither joints, fibres nor shorter steps make it fall any more")
-        if scene.kinematics == "p-delta":
-            causes.append('rigid bodies turn by what they turn, P–Δ by little: compare with kinematics = "large"')
-    if _sheared(scene, best):
-        causes.append("a joint bears all of Q_max, but the reference's beams do not yield in shear")
     if failures:
         causes.append(f"{len(failures)} finer or coarser models could not be stepped: {failures[-1].reason}")
     return "; ".join(causes)
 
 
-def _sheared(scene: Scene, best: Trial) -> bool:
-    """Whether a joint comes to its shear capacity."""
-    return any(
-        np.abs(best.push.force[:, i, 1]).max() >= 0.99 * scene.capacity(place.member).Q_max
-        for i, place in enumerate(best.push.places)
+def shear_remarks(scene: Scene, reference: PushAnswer, push: Push) -> tuple[str, ...]:
+    """Members in which more shear than Q_max comes up: a reference of beams does not yield in shear."""
+    if not isinstance(reference, Pushover):
+        return ()
+    most: dict[str, float] = {}
+    for i, place in enumerate(push.places):
+        most[place.member] = max(most.get(place.member, 0.0), float(np.abs(push.force[:, i, 1]).max()))
+    return tuple(
+        f"members.{name}: shear comes to {100.0 * Q / scene.capacity(name).Q_max:.0f} % of Q_max; joints give way "
+        "there; the beams of the reference do not, nor did the joints that were compared with them"
+        for name, Q in most.items()
+        if scene.capacity(name).Q_max < Q
     )
 
 

@@ -22,31 +22,36 @@ _LOBATTO = tuple(
         10: (12, 16),
         12: (8, 12, 16, 48),
         14: (12, 16, 96),
-        17: (16, 24),
-        20: (24,),
+        17: (16, 24, 48),
+        20: (24, 96),
     }.items()
     for fibres in counts
 )
 _EQUAL = ((9, 8), (17, 12), (33, 16))
-# Where more joints and fibres no longer help it may be the step: the finest models again, stepped finer.
+# Where more joints and fibres no longer help it may be the step: fine models again, stepped finer.
 _FINE_STEPPING = ((1.0 / 240.0, 2), (1.0 / 1000.0, 4))
-_FINE = ((10, 16), (14, 24), (20, 24))
+_FINE = ((10, 16), (17, 48))
 
-_LAW_COSTS = {"rigid-plastic": 1.0, "elastic-plastic": 1.0, "interaction": 6.5}
+# Prices of `benchmarks/model_prices.py` in microseconds, rounded: of a step, of a joint in it, of each Newton step
+# after the first for every joint, and for every Newton step what a law adds, that of fibres per fibre.
+_STEP, _JOINT, _FURTHER = 5.0, 0.25, 0.5
+_LAW = {"rigid-plastic": 0.0, "elastic-plastic": 0.0, "interaction": 0.15, "fibre": 0.005}
+#: Newton steps in a step, on average, that a model is expected to take before it was tried.
+EXPECTED_NEWTON_STEPS = 1.5
 
 
-def relative_cost(model: Model, members: Iterable[str] = ("",)) -> float:
-    """Cost of a second of simulation of ``members``, in units of one elastic–plastic joint stepped once.
+def relative_cost(model: Model, members: Iterable[str] = ("",), newton_steps: float = EXPECTED_NEWTON_STEPS) -> float:
+    """Cost of a second of simulation of ``members``, as processor time in microseconds of the machine of the prices.
 
-    Measured on chains and frames: what Chipmunk and the solver do for a joint costs about as much as sixteen fibres;
-    the return to a yield surface costs several times that.
+    Times vary from run to run and from machine to machine; joints, fibres and Newton steps are counted, so that the
+    same model has the same cost. The prices tell times within 15 % on average.
     """
     joints = 0.0
     for name in members:
         own = model.of(name)
-        law = 1.0 + own.fibres / 16.0 if own.law == "fibre" else _LAW_COSTS[own.law]
-        joints += (own.joints - 1) * law
-    return joints * (0.8 + 0.1 * model.iterations) / model.dt
+        law = _LAW[own.law] * (own.fibres if own.law == "fibre" else 1)
+        joints += (own.joints - 1) * (_JOINT + _FURTHER * (newton_steps - 1.0) + law * newton_steps)
+    return (_STEP + joints) * (0.8 + 0.1 * model.iterations) / model.dt
 
 
 def candidates(scene: Scene, plans: Mapping[str, MemberPlan]) -> list[Model]:

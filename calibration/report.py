@@ -9,22 +9,23 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from calibration.export import versions
-from calibration.tables import WRAPPED, Sheet, sheets, verdict
-from calibration.tuning import Calibration
+from calibration.sheets import WRAPPED, Report, Sheet
+from calibration.versions import versions
 
 #: Rows of a table on the terminal; files hold them all.
 _SHOWN = 14
 
 
-def print_report(result: Calibration, console: Console) -> None:
-    """The verdict first, then capacities, joints, errors, and speed against error."""
-    head, text = verdict(result)
-    line = Text(f"{head}. ", "bold green" if result.target_met else "bold red")
+def print_report(report: Report, console: Console) -> None:
+    """The verdict first, then the tables."""
+    head, text = report.verdict
+    line = Text(f"{head}. ", "bold green" if report.met else "bold red")
     console.print(line.append(text, "default not bold"))
-    if result.limit:
-        console.print(f"What limits it: {result.limit}.", style="red")
-    for sheet in sheets(result):
+    if report.limit:
+        console.print(f"What limits it: {report.limit}.", style="red")
+    for remark in report.remarks:
+        console.print(f"Mind: {remark}.", style="yellow")
+    for sheet in report.sheets:
         console.print(_table(sheet))
 
 
@@ -46,13 +47,15 @@ def _table(sheet: Sheet) -> Table:
     return table
 
 
-def report_markdown(result: Calibration) -> str:
+def report_markdown(report: Report) -> str:
     """The report as Markdown text."""
-    head, text = verdict(result)
-    lines = [f"# Calibration: {result.scene.title}", "", f"Scene `{result.name}`.", "", f"**{head}.** {text}", ""]
-    if result.limit:
-        lines += [f"What limits it: {result.limit}.", ""]
-    for sheet in sheets(result):
+    head, text = report.verdict
+    lines = [f"# {report.kind}: {report.title}", "", f"Scene `{report.scene}`.", "", f"**{head}.** {text}", ""]
+    if report.limit:
+        lines += [f"What limits it: {report.limit}.", ""]
+    for remark in report.remarks:
+        lines += [f"Mind: {remark}.", ""]
+    for sheet in report.sheets:
         lines += [f"## {sheet.title}", ""]
         if sheet.note:
             lines += [sheet.note, ""]

@@ -1,43 +1,43 @@
-"""What a report says, as tables: the same on the terminal, in Markdown and in HTML."""
+"""What the report of a calibration says."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from calibration import figures
 from calibration.export import joint_table
 from calibration.fitting import Fit
+from calibration.sheets import Picture, Report, Sheet, percent
 from calibration.tuning import Calibration
 from capacity.units import engineering
+from fem_reference import Pushover
 from sim import MemberModel, Model
 
-#: Heads of columns whose words may take several lines.
-WRAPPED = ("<why", "<model", "<kind", "<remark")
 
-
-@dataclass(frozen=True)
-class Sheet:
-    """A table.
-
-    Attributes
-    ----------
-    title, note : str
-    heads : tuple of str
-        Of the columns; those whose values are words begin with "<".
-    rows : tuple of tuple of str
-    marked : int
-        The row that matters most; -1 for none.
-    wide : tuple of str
-        Heads of columns that a narrow terminal goes without.
-    """
-
-    title: str
-    note: str
-    heads: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    marked: int = -1
-    wide: tuple[str, ...] = ()
+def report(result: Calibration) -> Report:
+    """All of it: the verdict, tables and figures."""
+    reference = result.reference
+    fibres = f" a member, {reference.fibres} fibres a section" if isinstance(reference, Pushover) else ""
+    curves = (
+        f"Reference: {reference.method}; {reference.elements} elements{fibres}, estimated error "
+        f"{percent(reference.error_estimate, 2)} of the peak load. Below: model less reference, the target shaded."
+    )
+    frontier = "Path error against computing time of every model tried; the chosen one is ringed."
+    return Report(
+        kind="Calibration",
+        title=result.scene.title,
+        scene=result.name,
+        met=result.target_met,
+        verdict=verdict(result),
+        limit=result.limit,
+        remarks=result.remarks,
+        sheets=tuple(sheets(result)),
+        pictures=(
+            Picture("Load and displacement", figures.curves(result), curves),
+            Picture("", figures.frontier(result), frontier),
+        ),
+    )
 
 
 def verdict(result: Calibration) -> tuple[str, str]:
@@ -62,11 +62,6 @@ def sheets(result: Calibration) -> list[Sheet]:
     if result.findings.hinges:
         tables.append(_hinges(result))
     return [*tables, _joints(result), _trials(result)]
-
-
-def percent(share: float, digits: int = 3) -> str:
-    """A share as text."""
-    return f"{100.0 * share:.{digits}g} %"
 
 
 def in_words(model: Model, members: Iterable[str]) -> str:

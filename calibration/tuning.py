@@ -10,12 +10,12 @@ import msgspec
 from calibration.comparable_push import push_model
 from calibration.errors import Findings, compare, find
 from calibration.fitting import Fit, LoadCase, fit, fitted
-from calibration.limits import what_limits
+from calibration.limits import shear_remarks, what_limits
 from calibration.member_plans import MemberPlan, member_plans
 from calibration.planner import candidates, candidates_to_fit, cheaper, groups, relative_cost
 from calibration.trials import Failure, Trial
 from capacity import Capacity, InputError
-from fem_reference import NotConverged, PlanePush, PushAnswer, default_tolerance, natural_modes, push_over
+from fem_reference import NotConverged, PlanePush, PushAnswer, default_tolerance, natural_modes, push_over, remarks
 from scene import Scene
 from scene.quantities import Length
 from sim import Model, SolverError, assemble
@@ -91,7 +91,12 @@ class Calibration:
                 f"the reference itself is only known within {100.0 * self.reference.error_estimate:.2g} %, "
                 f"and must be {REFERENCE_MARGIN:.0f} times better than the target"
             )
-        return what_limits(self.scene, self.best, self.trials, self.failures)
+        return what_limits(self.best, self.trials, self.failures)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What to mind about beam theory, kinematics and shear; empty when there is nothing."""
+        return (*remarks(self.scene), *shear_remarks(self.scene, self.reference, self.best.push))
 
     @property
     def fitted_scene(self) -> Scene:
@@ -220,7 +225,8 @@ class Bench:
         except SolverError as error:
             self.failures.append(Failure(model, str(error)))
             return None
-        trial = Trial(model, push, compare(self.reference, push), relative_cost(model, self.scene.members), found)
+        cost = relative_cost(model, self.scene.members, push.newton_steps)
+        trial = Trial(model, push, compare(self.reference, push), cost, found)
         self.trials.append(trial)
         return trial
 
@@ -242,7 +248,7 @@ def _save(
             left -= 1
             watch(f"{names[0]} with {own.joints} joints", 1.0 - left / _MOST_SAVING_TRIALS)
             less = bench.try_out(replace(trial.model, members={**trial.model.members, **dict.fromkeys(names, own)}))
-            if less is not None and less.errors.path_max <= target_error:
+            if less is not None and less.errors.path_max <= target_error and less.cost < trial.cost:
                 trial = less
                 break
 

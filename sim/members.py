@@ -117,14 +117,18 @@ class Assembly:
             self._arrange()
         return members
 
-    def step(self, dt: float, share: float = 1.0, *, sudden: bool = False) -> None:
-        """Step the space by ``dt`` [s], with a share of the dead loads acting, and the sudden ones if wanted."""
-        self.refine()
+    def act(self, share: float = 1.0, *, sudden: bool = False) -> None:
+        """Have a share of the dead loads act in the next step, and the sudden ones if wanted."""
         for load in self.dead_loads:
             load.act(share)
         if sudden:
             for load in self.sudden_loads:
                 load.act()
+
+    def step(self, dt: float, share: float = 1.0, *, sudden: bool = False) -> None:
+        """Step the space by ``dt`` [s] with these loads."""
+        self.refine()
+        self.act(share, sudden=sudden)
         self.space.step(dt)
 
 

@@ -49,7 +49,7 @@ class Push:
     steps : int
         Steps taken.
     seconds : float
-        Processor time that the steps took, which other work on the machine lengthens little.
+        Processor time that Chipmunk's steps took, which other work on the machine lengthens little.
     simulated_seconds : float
         Time that passed in the simulation.
     newton_steps : float
@@ -134,8 +134,9 @@ def push_over(
     for k in range(steps):
         driver.aim(travel[k], model.dt)
         moments.act(model.dt, factor=driver.factor)
+        assembly.act()
         started = time.thread_time()
-        assembly.step(model.dt)
+        assembly.space.step(model.dt)
         seconds += time.thread_time() - started
         driver.read(model.dt)
         displacement[k], load[k] = driver.displacement, driver.factor

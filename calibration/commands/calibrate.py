@@ -46,16 +46,17 @@ def calibrate(
     from calibration.export import calibration_object, curve_csv, joint_table
     from calibration.page import report_page
     from calibration.report import print_report, report_markdown
+    from calibration.tables import report
     from calibration.tuning import calibrate as tune
 
     with progress_bar(messages) as watch:
         result = tune(loaded, target, scene, watch)
         watch("writing the report", 1.0)
-        whole = calibration_object(result)
+        whole, found = calibration_object(result), report(result)
         folder.write(
             {
-                "report.html": report_page(result),
-                "report.md": report_markdown(result),
+                "report.html": report_page(found),
+                "report.md": report_markdown(found),
                 "calibration.json": json.dumps(whole, indent=1),
                 "joints.json": json.dumps(joint_table(result.fitted_scene, result.best.model, scene), indent=1),
                 "reference.csv": curve_csv(result.reference.displacement, result.reference.load),
@@ -65,6 +66,6 @@ def calibrate(
     if as_json:
         print(json.dumps(whole))
     else:
-        print_report(result, Console())
+        print_report(found, Console())
     folder.announce(messages)
     return 0 if result.target_met else 1

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from calibration.export import versions
 from calibration.study.measure import REPEATS
 from calibration.study.points import HardPoint, ModelPoint, Point
+from calibration.versions import versions
 from fem_reference import PushAnswer
 
 #: Share of an error by which another must be smaller to be worth its time.

@@ -7,11 +7,11 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from calibration.export import versions
 from calibration.figures import svg
 from calibration.study import figures
 from calibration.study.measure import REPEATS
 from calibration.study.outcome import Outcome, speed
+from calibration.versions import versions
 
 
 def print_study(study: Outcome, console: Console) -> None:

@@ -39,6 +39,16 @@ def test_shear_flexibility_is_in_both_models() -> None:
         assert slope == pytest.approx(stiffness, rel=3e-3)
 
 
+def test_shear_beyond_what_beams_know_is_named() -> None:
+    """A cantilever of IPE 300 shorter than its depth: M_p / L is above Q_max, and the reference's beams do not mind."""
+    scene = cantilever("IPE 300", 0.25, 0.002, theory="timoshenko")
+    result = calibrate(scene, 0.01)
+    assert result.target_met
+    over = result.reference.load[-1] / scene.capacity("beam").Q_max
+    assert over > 1.5
+    assert any(f"shear comes to {100.0 * over:.0f} % of Q_max" in remark for remark in result.remarks)
+
+
 def test_own_weight_is_carried_before_the_push() -> None:
     """Collapse at P = (M_p - q L² / 2) / L, in the reference and in the model."""
     scene = cantilever("rectangle 20x40 mm", 2.0, 0.3, gravity=9.81)

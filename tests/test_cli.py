@@ -78,7 +78,7 @@ def test_the_model_chosen_is_the_cheapest_tried_that_meets_the_target(calibrated
     met = [trial for trial in tried if trial["path_max"] <= 0.01]
     assert min(met, key=lambda trial: trial["cost"])["path_max"] == calibrated[0]["errors"]["path_max"]
     assert min(trial["path_max"] for trial in tried if trial not in met) > 0.01
-    assert {trial["law"] for trial in tried} == {"elastic-plastic", "fibre"}
+    assert {trial["law"] for trial in tried} >= {"elastic-plastic", "fibre"}
 
 
 def test_files_are_complete(calibrated: tuple[dict[str, Any], Path]) -> None:

@@ -78,7 +78,7 @@ class Tables:
                 at.JOINT_SLOT: np.array(slots, dtype=np.int64),
                 at.SETTINGS: settings,
                 at.LEDGER: np.zeros(at.LEDGER_WORDS),
-                at.JACOBIAN: np.zeros((n, 18)),
+                at.GRADIENT: np.zeros((n, at.GRADIENT_WORDS)),
                 at.RESPONSE: np.zeros((n, at.RESPONSE_WORDS)),
                 at.WEIGHT: np.zeros((moving, at.WEIGHT_WORDS)),
                 at.SHIFT: np.zeros((len(bodies), 6)),
@@ -148,7 +148,7 @@ class Tables:
 
 
 # The plastic state is kept beside these. Gradient and response of the last step weigh the bodies of the next.
-_OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.JACOBIAN, at.RESPONSE, at.RESULT)
+_OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.GRADIENT, at.RESPONSE, at.RESULT)
 _KEPT = (*_OF_JOINTS, at.SETTINGS, at.LEDGER, at.LAST_VELOCITY, at.LAST_POSITION, at.SHIFT)
 _KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.ROOM)
 

@@ -3,87 +3,73 @@
 It is factored as L D Lᵀ in the order and over the pattern that `sim.ordering` found, so any graph of bodies will do.
 """
 
-from numba import njit
-
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.layout import INERTIA_I, INERTIA_M, TANGENT
+from sim.kernels.layout import E_X, E_Y, HOLDS, INERTIA_I, INERTIA_M, TANGENT, U_A, U_B, V_A, V_B
+from sim.memory import clear, kernel
 
 
-@njit(error_model="numpy")
+@kernel
 def assemble(t, factor):  # type: ignore[no-untyped-def]
     """M + factor Jᵀ D J, D from the joints' last response; upper triangles of the diagonal blocks."""
-    n, moving = t[at.JOINTS], t[at.MOVING]
-    joint_bodies, joint_slot, weight = views.joint_bodies(t), views.joint_slot(t), views.weight(t)
-    response, jacobian = views.response(t), views.jacobian(t)
+    joint_bodies, joint_slot, moving = views.joint_bodies(t), views.joint_slot(t), t[at.MOVING]
+    response, gradient, weight = views.response(t), views.gradient(t), views.weight(t)
     diagonal, lower = views.diagonal(t), views.lower(t)
     for i in range(moving):
         mass = weight[i, INERTIA_M]
         diagonal[i, 0], diagonal[i, 1], diagonal[i, 2] = mass, 0.0, 0.0
         diagonal[i, 4], diagonal[i, 5], diagonal[i, 8] = mass, 0.0, weight[i, INERTIA_I]
-    for slot in range(t[at.LOWER]):
-        for i in range(9):
-            lower[slot, i] = 0.0
-    for k in range(n):
+    clear(lower)
+    for k in range(t[at.JOINTS]):
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
-        d00, d01, d02 = (
-            factor * response[k, TANGENT],
-            factor * response[k, TANGENT + 1],
-            factor * response[k, TANGENT + 2],
-        )
-        d11, d12, d22 = (
-            factor * response[k, TANGENT + 3],
-            factor * response[k, TANGENT + 4],
-            factor * response[k, TANGENT + 5],
-        )
-        # D J, whose columns for the translations of a and b differ only in sign.
-        x, y = jacobian[k, 3], jacobian[k, 9]
-        l00, l10 = d00 * x + d01 * y, d01 * x + d11 * y
-        x, y = jacobian[k, 4], jacobian[k, 10]
-        l01, l11 = d00 * x + d01 * y, d01 * x + d11 * y
-        # J row products with those columns are shared by both bodies, too.
-        t00 = jacobian[k, 3] * l00 + jacobian[k, 9] * l10
-        t01 = jacobian[k, 3] * l01 + jacobian[k, 9] * l11
-        t11 = jacobian[k, 4] * l01 + jacobian[k, 10] * l11
-        x, y, z = jacobian[k, 2], jacobian[k, 8], jacobian[k, 14]
-        a0, a1, a2 = d00 * x + d01 * y + d02 * z, d01 * x + d11 * y + d12 * z, d02 * x + d12 * y + d22 * z
-        x, y, z = jacobian[k, 5], jacobian[k, 11], jacobian[k, 17]
-        b0, b1, b2 = d00 * x + d01 * y + d02 * z, d01 * x + d11 * y + d12 * z, d02 * x + d12 * y + d22 * z
+        d00, d01, d02 = response[k, TANGENT], response[k, TANGENT + 1], response[k, TANGENT + 2]
+        d11, d12, d22 = response[k, TANGENT + 3], response[k, TANGENT + 4], response[k, TANGENT + 5]
+        c, s = gradient[k, E_X], gradient[k, E_Y]
+        # D J for translations of b; for those of a it has the other sign. With J's rows, the share in T.
+        x0, x1 = factor * (d00 * c - d01 * s), factor * (d01 * c - d11 * s)
+        y0, y1 = factor * (d00 * s + d01 * c), factor * (d01 * s + d11 * c)
+        xx, xy, yy = c * x0 - s * x1, c * y0 - s * y1, s * y0 + c * y1
+        # D J for rotations of a and of b, and its product with the columns for translations of b.
+        u_a, v_a, u_b, v_b = gradient[k, U_A], gradient[k, V_A], gradient[k, U_B], gradient[k, V_B]
+        turn = gradient[k, HOLDS]
+        a0, a1 = factor * (d00 * u_a + d01 * v_a - d02 * turn), factor * (d01 * u_a + d11 * v_a - d12 * turn)
+        b0, b1 = factor * (d00 * u_b + d01 * v_b + d02 * turn), factor * (d01 * u_b + d11 * v_b + d12 * turn)
+        a2, b2 = factor * (d02 * u_a + d12 * v_a - d22 * turn), factor * (d02 * u_b + d12 * v_b + d22 * turn)
+        xa, ya, xb, yb = c * a0 - s * a1, s * a0 + c * a1, c * b0 - s * b1, s * b0 + c * b1
         if ia < moving:
-            diagonal[ia, 0] += t00
-            diagonal[ia, 1] += t01
-            diagonal[ia, 4] += t11
-            diagonal[ia, 2] -= jacobian[k, 3] * a0 + jacobian[k, 9] * a1
-            diagonal[ia, 5] -= jacobian[k, 4] * a0 + jacobian[k, 10] * a1
-            diagonal[ia, 8] += jacobian[k, 2] * a0 + jacobian[k, 8] * a1 + jacobian[k, 14] * a2
+            diagonal[ia, 0] += xx
+            diagonal[ia, 1] += xy
+            diagonal[ia, 4] += yy
+            diagonal[ia, 2] -= xa
+            diagonal[ia, 5] -= ya
+            diagonal[ia, 8] += u_a * a0 + v_a * a1 - turn * a2
         if ib < moving:
-            diagonal[ib, 0] += t00
-            diagonal[ib, 1] += t01
-            diagonal[ib, 4] += t11
-            diagonal[ib, 2] += jacobian[k, 3] * b0 + jacobian[k, 9] * b1
-            diagonal[ib, 5] += jacobian[k, 4] * b0 + jacobian[k, 10] * b1
-            diagonal[ib, 8] += jacobian[k, 5] * b0 + jacobian[k, 11] * b1 + jacobian[k, 17] * b2
+            diagonal[ib, 0] += xx
+            diagonal[ib, 1] += xy
+            diagonal[ib, 4] += yy
+            diagonal[ib, 2] += xb
+            diagonal[ib, 5] += yb
+            diagonal[ib, 8] += u_b * b0 + v_b * b1 + turn * b2
         slot = joint_slot[k]
         if slot >= 0:
-            lower[slot, 0] -= t00
-            lower[slot, 1] -= t01
-            lower[slot, 3] -= t01
-            lower[slot, 4] -= t11
-            turning = jacobian[k, 2] * b0 + jacobian[k, 8] * b1 + jacobian[k, 14] * b2
+            lower[slot, 0] -= xx
+            lower[slot, 1] -= xy
+            lower[slot, 3] -= xy
+            lower[slot, 4] -= yy
+            lower[slot, 8] += u_a * b0 + v_a * b1 - turn * b2
             if ia > ib:
-                lower[slot, 2] -= jacobian[k, 3] * b0 + jacobian[k, 9] * b1
-                lower[slot, 5] -= jacobian[k, 4] * b0 + jacobian[k, 10] * b1
-                lower[slot, 6] += jacobian[k, 3] * a0 + jacobian[k, 9] * a1
-                lower[slot, 7] += jacobian[k, 4] * a0 + jacobian[k, 10] * a1
+                lower[slot, 2] -= xb
+                lower[slot, 5] -= yb
+                lower[slot, 6] += xa
+                lower[slot, 7] += ya
             else:
-                lower[slot, 2] += jacobian[k, 3] * a0 + jacobian[k, 9] * a1
-                lower[slot, 5] += jacobian[k, 4] * a0 + jacobian[k, 10] * a1
-                lower[slot, 6] -= jacobian[k, 3] * b0 + jacobian[k, 9] * b1
-                lower[slot, 7] -= jacobian[k, 4] * b0 + jacobian[k, 10] * b1
-            lower[slot, 8] += turning
+                lower[slot, 2] += xa
+                lower[slot, 5] += ya
+                lower[slot, 6] -= xb
+                lower[slot, 7] -= yb
 
 
-@njit(inline="always", error_model="numpy")
+@kernel
 def factorise_block(blocks, k):  # type: ignore[no-untyped-def]
     """L D Lᵀ of a symmetric 3 × 3 block in place: 1/d₀ l₁₀ l₂₀ · 1/d₁ l₂₁ · · 1/d₂.
 
@@ -98,7 +84,7 @@ def factorise_block(blocks, k):  # type: ignore[no-untyped-def]
     blocks[k, 0], blocks[k, 1], blocks[k, 2], blocks[k, 4], blocks[k, 5], blocks[k, 8] = d0, l10, l20, d1, l21, d2
 
 
-@njit(inline="always", error_model="numpy")
+@kernel
 def solve_block(blocks, k, x, y, z):  # type: ignore[no-untyped-def]
     """Solve with a block that `factorise_block` has factored."""
     y -= blocks[k, 1] * x
@@ -107,7 +93,7 @@ def solve_block(blocks, k, x, y, z):  # type: ignore[no-untyped-def]
     return x * blocks[k, 0] - blocks[k, 1] * y - blocks[k, 2] * z, y, z
 
 
-@njit(error_model="numpy")
+@kernel
 def factorise(moving, column_start, column_rows, fill_targets, diagonal, lower, scaled):  # type: ignore[no-untyped-def]
     """Block L D Lᵀ in place: ``diagonal`` is factored, ``scaled`` becomes L.
 
@@ -140,7 +126,7 @@ def factorise(moving, column_start, column_rows, fill_targets, diagonal, lower, 
                     lower[target, r + 2] -= x * lower[p, 6] + y * lower[p, 7] + z * lower[p, 8]
 
 
-@njit(error_model="numpy")
+@kernel
 def factorise_matrix(t, factor):  # type: ignore[no-untyped-def]
     """Assemble M + factor Jᵀ D J, and factor it."""
     assemble(t, factor)
@@ -155,13 +141,13 @@ def factorise_matrix(t, factor):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(error_model="numpy")
+@kernel
 def solve(t, first, x):  # type: ignore[no-untyped-def]
     """Solve with the factored matrix in place; ``x``, (bodies, 3), holds a right side that is zero before ``first``."""
     substitute(t[at.MOVING], first, views.column_start(t), views.column_rows(t), views.diagonal(t), views.scaled(t), x)
 
 
-@njit(error_model="numpy")
+@kernel
 def substitute(moving, first, column_start, column_rows, diagonal, scaled, x):  # type: ignore[no-untyped-def]
     """Solve L D Lᵀ x = b in place; ``x`` holds b, which is zero before body ``first``."""
     for k in range(first, moving):

@@ -16,7 +16,6 @@ done is then stored and dissipated without remainder, at any length of the step.
 """
 
 import numpy as np
-from numba import njit
 
 from sim.kernels import layout as at
 from sim.kernels import views
@@ -43,10 +42,10 @@ from sim.kernels.layout import (
     STEP,
 )
 from sim.kernels.residual import reach_of
-from sim.memory import call_law, floats
+from sim.memory import call_law, floats, kernel
 
 
-@njit(inline="always", error_model="numpy")
+@kernel
 def used(limits, plastic, flow):  # type: ignore[no-untyped-def]
     """Largest share of a limit used after ``flow``, and the share of the flow that the limit leaves room for."""
     share, room = 0.0, 1.0
@@ -67,18 +66,18 @@ def used(limits, plastic, flow):  # type: ignore[no-untyped-def]
     return share, room
 
 
-@njit(error_model="numpy")
+@kernel
 def flow_share(t):  # type: ignore[no-untyped-def]
     """How much of a step's plastic flow there is for what the law finds at q*."""
     settings = views.settings(t)
     return 1.0 if settings[BETA] == 0.0 else 1.0 / (0.5 + settings[DELTA])
 
 
-@njit(error_model="numpy")
+@kernel
 def weaken(t):  # type: ignore[no-untyped-def]
     """Scale the forces of joints that would pass their limits; returns by how much any scale changed."""
     joint_bodies, laws, limits = views.joint_bodies(t), views.laws(t), views.limits(t)
-    active, jacobian, deformation = views.active(t), views.jacobian(t), views.per_joint(t, at.DEFORMATION)
+    active, gradient, deformation = views.active(t), views.gradient(t), views.per_joint(t, at.DEFORMATION)
     velocity, result, scale = views.per_body(t, at.VELOCITY), views.result(t), views.scale(t)
     reach, whole = reach_of(t), flow_share(t)
     q, out = np.empty(3), np.empty(COMMIT_WORDS)
@@ -87,7 +86,7 @@ def weaken(t):  # type: ignore[no-untyped-def]
         limit = limits[k]
         if active[k] == 0 or (limit[0] == np.inf and limit[1] == np.inf and limit[2] == np.inf):
             continue
-        x, y, z = rates(jacobian, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
+        x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         q[0], q[1], q[2] = (
             deformation[k, 0] + reach * x,
             deformation[k, 1] + reach * y,
@@ -106,14 +105,14 @@ def weaken(t):  # type: ignore[no-untyped-def]
     return change
 
 
-@njit(error_model="numpy")
+@kernel
 def commit(t):  # type: ignore[no-untyped-def]
     """Let every law take over its plastic state at the step's final q*, and book the joints' energies.
 
     Returns how many joints broke.
     """
     joint_bodies, laws, limits = views.joint_bodies(t), views.laws(t), views.limits(t)
-    active, damping, jacobian = views.active(t), views.damping(t), views.jacobian(t)
+    active, damping, gradient = views.active(t), views.damping(t), views.gradient(t)
     deformation, impulse = views.per_joint(t, at.DEFORMATION), views.per_joint(t, at.IMPULSE)
     start, velocity = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.WRITTEN)
     last = views.per_body(t, at.LAST_VELOCITY)
@@ -133,8 +132,8 @@ def commit(t):  # type: ignore[no-untyped-def]
             r[RESULT_BEFORE], r[RESULT_ELASTIC] = 0.0, 0.0
             continue
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
-        x, y, z = rates(jacobian, k, velocity, ia, velocity, ib)
-        x0, y0, z0 = rates(jacobian, k, start, ia, start, ib)
+        x, y, z = rates(gradient, k, velocity, ia, velocity, ib)
+        x0, y0, z0 = rates(gradient, k, start, ia, start, ib)
         d, c = deformation[k], damping[k]
         q[0], q[1], q[2] = d[0] + reach * x, d[1] + reach * y, d[2] + reach * z
         for i in range(3):
@@ -153,7 +152,7 @@ def commit(t):  # type: ignore[no-untyped-def]
         share, room = used(limits[k], r[RESULT_PLASTIC:], out[2:])
         at_end, lost, second_half = out[0], scale[k] * out[1], 0.5 * scale[k] * out[1]
         if settings[BETA] != 0.0:
-            xl, yl, zl = rates(jacobian, k, last, ia, last, ib)
+            xl, yl, zl = rates(gradient, k, last, ia, last, ib)
             at_end += half_a_step_on(t, k, xl, yl, zl, x, y, z, (1.0 - 1.0 / whole) * out[2:])
             second_half = 0.0
         x, y, z = 0.5 * (x0 + x), 0.5 * (y0 + y), 0.5 * (z0 + z)
@@ -201,7 +200,7 @@ def commit(t):  # type: ignore[no-untyped-def]
     return broke
 
 
-@njit(error_model="numpy")
+@kernel
 def half_a_step_on(t, k, x0, y0, z0, x, y, z, flow):  # type: ignore[no-untyped-def]
     """Elastic energy of joint k half a step after its position, where the velocities are, less that at q*.
 

@@ -15,7 +15,6 @@ Overlap is taken out by pseudo-velocities that move the bodies once and carry no
 import math
 
 import numpy as np
-from numba import njit
 
 from sim.chipmunk import (
     BIAS_SPIN,
@@ -50,14 +49,14 @@ from sim.kernels.layout import (
     WHERE,
 )
 from sim.kernels.residual import advance, linearise, reach_of
-from sim.memory import floats
+from sim.memory import clear, floats, kernel
 
 _SWEEPS = 200
 #: What `touch` gives when an impulse is not a number: nothing was changed then.
 NOT_FINITE = -1.0
 
 
-@njit(error_model="numpy")
+@kernel
 def gather_contacts(head):  # type: ignore[no-untyped-def]
     """Contacts of all structures of a group."""
     count, c = 0, head
@@ -71,13 +70,16 @@ def gather_contacts(head):  # type: ignore[no-untyped-def]
         t = views.control(c)
         own, own_touches = views.places(t), views.touches(t)
         for k in range(t[at.CONTACTS]):
-            places[count], touches[count] = own[k], own_touches[k]
+            for i in range(at.PLACE_WORDS):
+                places[count, i] = own[k, i]
+            for i in range(at.TOUCH_WORDS):
+                touches[count, i] = own_touches[k, i]
             count += 1
         c = t[at.NEXT]
     return places, touches
 
 
-@njit(error_model="numpy")
+@kernel
 def touch(head):  # type: ignore[no-untyped-def]
     """Solve a group's contacts as it now stands; returns by how much their impulses changed, or `NOT_FINITE`."""
     places, touches = gather_contacts(head)
@@ -107,7 +109,7 @@ def touch(head):  # type: ignore[no-untyped-def]
     return largest
 
 
-@njit(error_model="numpy")
+@kernel
 def relative(place, touch, row):  # type: ignore[no-untyped-def]
     """Velocity of b relative to a along a row, that of the surface included."""
     total = 0.0
@@ -124,7 +126,7 @@ def relative(place, touch, row):  # type: ignore[no-untyped-def]
     return total
 
 
-@njit(error_model="numpy")
+@kernel
 def operator(places, touches):  # type: ignore[no-untyped-def]
     """G for all contacts, by one substitution a column and structure."""
     rows = 2 * len(places)
@@ -138,7 +140,7 @@ def operator(places, touches):  # type: ignore[no-untyped-def]
                 continue
             t = views.control(c)
             solution = views.per_body(t, at.SOLUTION)
-            solution[:, :] = 0.0
+            clear(solution)
             add_row(c, place, touch, k, 1.0, solution)
             first = t[at.MOVING]
             if one == c:
@@ -165,7 +167,7 @@ def operator(places, touches):  # type: ignore[no-untyped-def]
     return g
 
 
-@njit(error_model="numpy")
+@kernel
 def complement(places, touches, g, v, change):  # type: ignore[no-untyped-def]
     """Projected Gauss–Seidel on G; changes the accumulated impulses, returns the largest change over them."""
     rows = len(v)
@@ -202,7 +204,7 @@ def complement(places, touches, g, v, change):  # type: ignore[no-untyped-def]
     return largest / size if size > 0.0 else largest
 
 
-@njit(error_model="numpy")
+@kernel
 def strike(c, t, places, touches, change):  # type: ignore[no-untyped-def]
     """Apply changed contact impulses to a structure's bodies, and let its joints take their part of them."""
     solution, velocity, weight = views.per_body(t, at.SOLUTION), views.per_body(t, at.VELOCITY), views.weight(t)
@@ -223,15 +225,15 @@ def strike(c, t, places, touches, change):  # type: ignore[no-untyped-def]
     advance(t, 1.0)
 
 
-@njit(error_model="numpy")
+@kernel
 def sum_up(c, places, touches, amounts, out):  # type: ignore[no-untyped-def]
     """J_cᵀ times impulses of the rows, on the bodies of structure ``c``."""
-    out[:, :] = 0.0
+    clear(out)
     for r in range(len(amounts)):
         add_row(c, places[r >> 1], touches[r >> 1], r, amounts[r], out)
 
 
-@njit(error_model="numpy")
+@kernel
 def push_apart(head, places, touches, g, v, change):  # type: ignore[no-untyped-def]
     """Pseudo-velocities that take out overlap, through the structures."""
     any_overlap = False

@@ -29,14 +29,12 @@ The elastic energy that a movement without velocity (by hand, or taking out over
 work and contact work.
 """
 
-from numba import njit
-
 from sim.chipmunk import BODY_WORDS, CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE, CONTACT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.contacts import other_velocity, own_velocity
 from sim.kernels.inertia import mass_of, moment_of
-from sim.kernels.kinematics import rates
+from sim.kernels.kinematics import impulses, rates
 from sim.kernels.layout import (
     CACHED,
     INERTIA_I,
@@ -50,34 +48,34 @@ from sim.kernels.layout import (
     STEP_RATIO,
     WHERE,
 )
-from sim.memory import floats
+from sim.memory import floats, kernel
 
 
-@njit(error_model="numpy")
+@kernel
 def work_on_held(t, k, velocity, start):  # type: ignore[no-untyped-def]
     """Work that joint k does on bodies which are not dynamic."""
-    joint_bodies, j, impulse = views.joint_bodies(t), views.jacobian(t), views.per_joint(t, at.IMPULSE)
+    joint_bodies, impulse = views.joint_bodies(t), views.per_joint(t, at.IMPULSE)
+    px, py, on_a, on_b = impulses(views.gradient(t), k, impulse[k, 0], impulse[k, 1], impulse[k, 2])
     total = 0.0
     for side in range(2):
         i = joint_bodies[k, side]
         if i >= t[at.MOVING]:
-            for axis in range(3):
-                v = 0.5 * (start[i, axis] + velocity[i, axis])
-                c = 3 * side + axis
-                total += v * (impulse[k, 0] * j[k, c] + impulse[k, 1] * j[k, 6 + c] + impulse[k, 2] * j[k, 12 + c])
+            sign, moment = (1.0, on_b) if side == 1 else (-1.0, on_a)
+            x, y, turn = start[i, 0] + velocity[i, 0], start[i, 1] + velocity[i, 1], start[i, 2] + velocity[i, 2]
+            total += 0.5 * (sign * (px * x + py * y) + moment * turn)
     return total
 
 
-@njit(error_model="numpy")
+@kernel
 def work_of_shifts(t, k, column):  # type: ignore[no-untyped-def]
     """Work on joint k of movements without velocity; ``column`` 0: by contacts, 3: by hand."""
-    joint_bodies, jacobian, impulse = views.joint_bodies(t), views.jacobian(t), views.per_joint(t, at.IMPULSE)
+    joint_bodies, gradient, impulse = views.joint_bodies(t), views.gradient(t), views.per_joint(t, at.IMPULSE)
     by = views.shift(t)[:, column : column + 3]
-    x, y, z = rates(jacobian, k, by, joint_bodies[k, 0], by, joint_bodies[k, 1])
+    x, y, z = rates(gradient, k, by, joint_bodies[k, 0], by, joint_bodies[k, 1])
     return -(impulse[k, 0] * x + impulse[k, 1] * y + impulse[k, 2] * z) / views.settings(t)[STEP]
 
 
-@njit(error_model="numpy")
+@kernel
 def close(c, t):  # type: ignore[no-untyped-def]
     """Book what bodies and contacts did in a step; the joints' part is booked by `commit`."""
     ledger, settings, body_at = views.ledger(t), views.settings(t), views.body_at(t)
@@ -113,7 +111,7 @@ def close(c, t):  # type: ignore[no-untyped-def]
     ledger[LEDGER_CONTACT] += given - arrived
 
 
-@njit(error_model="numpy")
+@kernel
 def contacts(c, t, start, end):  # type: ignore[no-untyped-def]
     """The contacts that a structure solved as its own: work that other bodies did on it, and how much arrived."""
     places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[STEP_RATIO]

@@ -15,8 +15,6 @@ plastic work of its last move. Three things keep it from being negative, one aft
 
 import math
 
-from numba import njit
-
 from sim.chipmunk import BODY_WORDS, SPIN, VX, X
 from sim.kernels import layout as at
 from sim.kernels import views
@@ -30,13 +28,13 @@ from sim.kernels.layout import (
     LEDGER_PLASTIC,
     LEDGER_TO_COME,
 )
-from sim.memory import floats
+from sim.memory import floats, kernel
 
 # Share of the ledger's largest entry that is rounding.
 _ROUNDING = 1e-13
 
 
-@njit(error_model="numpy")
+@kernel
 def close_from_below(t, contact, plastic, numerical):  # type: ignore[no-untyped-def]
     """Do so; the ledger's entries as they were before this step [J]."""
     ledger = views.ledger(t)
@@ -48,7 +46,7 @@ def close_from_below(t, contact, plastic, numerical):  # type: ignore[no-untyped
     ledger[LEDGER_TO_COME] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC] - plastic)
 
 
-@njit(error_model="numpy")
+@kernel
 def move_between(ledger, entry, most):  # type: ignore[no-untyped-def]
     """Move what numerical dissipation lacks from an ``entry``, ``most`` at the most [J]; returns how much."""
     moved = max(min(-ledger[LEDGER_NUMERICAL], most), 0.0)
@@ -57,7 +55,7 @@ def move_between(ledger, entry, most):  # type: ignore[no-untyped-def]
     return moved
 
 
-@njit(error_model="numpy")
+@kernel
 def take_out(t, energy):  # type: ignore[no-untyped-def]
     """Take ``energy`` [J] out of the relative motion of a structure's bodies, as far as there is any."""
     if energy <= 0.0:

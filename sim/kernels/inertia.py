@@ -15,35 +15,34 @@ On a structure that nothing holds, the moment impulses h k ω are given back as 
 centre of mass. It deforms no joint, so the solution stays one, and the angular momentum stays what it was to rounding.
 """
 
-from numba import njit
-
-from sim.chipmunk import BODY_WORDS, COSINE, MASS, MOMENT, SINE, X
+from sim.chipmunk import BODY_WORDS, MASS, MOMENT, X
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.kinematics import impulses, turned
 from sim.kernels.layout import ANCHOR_A, INERTIA_I, INERTIA_M, INVERSE_I, INVERSE_M, TANGENT
-from sim.memory import floats
+from sim.memory import floats, kernel
 
 # Stands for an infinite mass or moment of inertia, so that no 0 · ∞ arises.
 _IMMOVABLE = 1e30
 
 
-@njit(inline="always", error_model="numpy")
+@kernel
 def mass_of(b):  # type: ignore[no-untyped-def]
     """Mass of a body's struct, finite."""
     return min(b[MASS], _IMMOVABLE)
 
 
-@njit(inline="always", error_model="numpy")
+@kernel
 def moment_of(b):  # type: ignore[no-untyped-def]
     """Moment of inertia of a body's struct, finite."""
     return min(b[MOMENT], _IMMOVABLE)
 
 
-@njit(error_model="numpy")
+@kernel
 def weigh(t):  # type: ignore[no-untyped-def]
     """Masses of the step; needs gradient, impulses and responses of the last step, before they are renewed."""
     joint_bodies, body_at, weight = views.joint_bodies(t), views.body_at(t), views.weight(t)
-    jacobian, impulse, response = views.jacobian(t), views.per_joint(t, at.IMPULSE), views.response(t)
+    gradient, impulse, response = views.gradient(t), views.per_joint(t, at.IMPULSE), views.response(t)
     damping, geometry, settings = views.damping(t), views.geometry(t), views.settings(t)
     moving, h = t[at.MOVING], settings[at.STEP]
     reach = h * (settings[at.BETA] + settings[at.DELTA])
@@ -57,14 +56,12 @@ def weigh(t):  # type: ignore[no-untyped-def]
         arms = abs(geometry[k, 0]) + abs(geometry[k, 1]) + abs(geometry[k, 2]) + abs(geometry[k, 3])
         if h * (abs(x) + abs(y)) * arms <= bending:
             continue  # it cannot outweigh what bends against it
-        # Impulse on b, and less it on a.
-        px, py = jacobian[k, 3] * x + jacobian[k, 9] * y, jacobian[k, 4] * x + jacobian[k, 10] * y
+        px, py, _, _ = impulses(gradient, k, x, y, 0.0)
         for side in range(2):
             i = joint_bodies[k, side]
             if i < moving:
                 b = floats(body_at[i], BODY_WORDS)
-                gx, gy = geometry[k, ANCHOR_A + 2 * side], geometry[k, ANCHOR_A + 2 * side + 1]
-                rx, ry = b[COSINE] * gx - b[SINE] * gy, b[SINE] * gx + b[COSINE] * gy
+                rx, ry = turned(b, geometry[k, ANCHOR_A + 2 * side], geometry[k, ANCHOR_A + 2 * side + 1])
                 outwards = h * (px * rx + py * ry)
                 weight[i, INERTIA_I] += (outwards if side == 1 else -outwards) - bending
     t[at.TURNING] = 0
@@ -79,7 +76,7 @@ def weigh(t):  # type: ignore[no-untyped-def]
         weight[i, INVERSE_I] = 1.0 / moment if moment < _IMMOVABLE else 0.0
 
 
-@njit(error_model="numpy")
+@kernel
 def give_back(t, velocity, out):  # type: ignore[no-untyped-def]
     """Velocities with the moment of the added inertia given back, if the structure is free; ``out`` may be new."""
     body_at, weight, moving = views.body_at(t), views.weight(t), t[at.MOVING]

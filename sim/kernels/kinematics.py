@@ -15,18 +15,34 @@ A joint that stands for a length ℓ of a member stands for an arc, and its kink
 
 import math
 
-from numba import njit
-
 from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, COSINE, SINE, X
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.layout import ANCHOR_A, ANCHOR_B, ARC, AXIS_A, AXIS_B, INVERSE_I, INVERSE_M, REST_A, REST_B, TURN
-from sim.memory import floats, integers
+from sim.kernels.layout import (
+    ANCHOR_A,
+    ANCHOR_B,
+    ARC,
+    AXIS_A,
+    AXIS_B,
+    E_X,
+    E_Y,
+    HOLDS,
+    INVERSE_I,
+    INVERSE_M,
+    REST_A,
+    REST_B,
+    TURN,
+    U_A,
+    U_B,
+    V_A,
+    V_B,
+)
+from sim.memory import floats, integers, kernel
 
 _EPSILON = 2.0**-52
 
 
-@njit(error_model="numpy")
+@kernel
 def leave_out(t):  # type: ignore[no-untyped-def]
     """Let go of joints that are no longer in the space; returns whether any joint is tied to a held body."""
     active, joint_at, joint_bodies = views.active(t), views.joint_at(t), views.joint_bodies(t)
@@ -38,104 +54,98 @@ def leave_out(t):  # type: ignore[no-untyped-def]
     return held
 
 
-@njit(error_model="numpy")
+@kernel
 def prepare(t):  # type: ignore[no-untyped-def]
     """Deformation and gradient at the bodies' present positions; joints that do not hold get none.
 
     Also what rounding of positions makes of the residual impulses, as an energy like theirs.
     """
-    joint_bodies, body_at, active, geometry = (
-        views.joint_bodies(t),
-        views.body_at(t),
-        views.active(t),
-        views.geometry(t),
-    )
-    jacobian, deformation, lightness = (
-        views.jacobian(t),
-        views.per_joint(t, at.DEFORMATION),
-        views.per_joint(t, at.LIGHTNESS),
-    )
+    joint_bodies, body_at, active = views.joint_bodies(t), views.body_at(t), views.active(t)
+    geometry, gradient, stiffness = views.geometry(t), views.gradient(t), views.stiffness(t)
+    deformation, lightness = views.per_joint(t, at.DEFORMATION), views.per_joint(t, at.LIGHTNESS)
     settings, weight, last = views.settings(t), views.weight(t), views.per_body(t, at.LAST_VELOCITY)
-    moving, lag, stiffness = t[at.MOVING], settings[at.BETA] * settings[at.STEP], views.stiffness(t)
-    rounding = 0.0
+    moving, lag, rounding = t[at.MOVING], settings[at.BETA] * settings[at.STEP], 0.0
     for k in range(t[at.JOINTS]):
         if active[k] == 0:
-            for i in range(18):
-                jacobian[k, i] = 0.0
+            for i in range(at.GRADIENT_WORDS):
+                gradient[k, i] = 0.0
             for i in range(3):
                 lightness[k, i] = 0.0
             continue
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         a, b = floats(body_at[ia], BODY_WORDS), floats(body_at[ib], BODY_WORDS)
-        rax = a[COSINE] * geometry[k, ANCHOR_A] - a[SINE] * geometry[k, ANCHOR_A + 1]
-        ray = a[SINE] * geometry[k, ANCHOR_A] + a[COSINE] * geometry[k, ANCHOR_A + 1]
-        rbx = b[COSINE] * geometry[k, ANCHOR_B] - b[SINE] * geometry[k, ANCHOR_B + 1]
-        rby = b[SINE] * geometry[k, ANCHOR_B] + b[COSINE] * geometry[k, ANCHOR_B + 1]
+        rax, ray = turned(a, geometry[k, ANCHOR_A], geometry[k, ANCHOR_A + 1])
+        rbx, rby = turned(b, geometry[k, ANCHOR_B], geometry[k, ANCHOR_B + 1])
         dx, dy = b[X] + rbx - a[X] - rax, b[X + 1] + rby - a[X + 1] - ray
         alpha = geometry[k, TURN]
         angle_a, angle_b = a[ANGLE] + geometry[k, REST_A], b[ANGLE] + geometry[k, REST_B]
         c, s = frame(a, b, geometry, k, angle_a, angle_b)
-        u, v = c * dx + s * dy, -s * dx + c * dy
-        jacobian[k, 0], jacobian[k, 1], jacobian[k, 2] = -c, -s, c * ray - s * rax + (1.0 - alpha) * v
-        jacobian[k, 3], jacobian[k, 4], jacobian[k, 5] = c, s, -c * rby + s * rbx + alpha * v
-        jacobian[k, 6], jacobian[k, 7], jacobian[k, 8] = s, -c, -s * ray - c * rax - (1.0 - alpha) * u
-        jacobian[k, 9], jacobian[k, 10], jacobian[k, 11] = -s, c, s * rby + c * rbx - alpha * u
-        jacobian[k, 12], jacobian[k, 13], jacobian[k, 14] = 0.0, 0.0, -1.0
-        jacobian[k, 15], jacobian[k, 16], jacobian[k, 17] = 0.0, 0.0, 1.0
+        u, v, kink = c * dx + s * dy, -s * dx + c * dy, angle_b - angle_a
+        u_a, u_b = c * ray - s * rax + (1.0 - alpha) * v, -c * rby + s * rbx + alpha * v
+        v_a, v_b = -s * ray - c * rax - (1.0 - alpha) * u, s * rby + c * rbx - alpha * u
         mass, turn_a, turn_b = 0.0, 0.0, 0.0
         if ia < moving:
             mass, turn_a = weight[ia, INVERSE_M], weight[ia, INVERSE_I]
         if ib < moving:
             mass, turn_b = mass + weight[ib, INVERSE_M], weight[ib, INVERSE_I]
-        lightness[k, 0] = mass + jacobian[k, 2] * jacobian[k, 2] * turn_a + jacobian[k, 5] * jacobian[k, 5] * turn_b
-        lightness[k, 1] = mass + jacobian[k, 8] * jacobian[k, 8] * turn_a + jacobian[k, 11] * jacobian[k, 11] * turn_b
-        lightness[k, 2] = turn_a + turn_b
-        deformation[k, 0], deformation[k, 1], deformation[k, 2] = u, v, angle_b - angle_a
-        arc = geometry[k, ARC] * (angle_b - angle_a)
-        deformation[k, 0] -= arc * (angle_b - angle_a)
-        jacobian[k, 2] += 2.0 * arc
-        jacobian[k, 5] -= 2.0 * arc
+        light_u, light_v = (
+            mass + u_a * u_a * turn_a + u_b * u_b * turn_b,
+            mass + v_a * v_a * turn_a + v_b * v_b * turn_b,
+        )
+        lightness[k, 0], lightness[k, 1], lightness[k, 2] = light_u, light_v, turn_a + turn_b
         place, turn = abs(b[X]) + abs(b[X + 1]) + abs(rbx) + abs(rby), abs(angle_a) + abs(angle_b)
-        rounding += lightness[k, 0] * (stiffness[k, 0] * place) ** 2 + lightness[k, 1] * (stiffness[k, 3] * place) ** 2
-        rounding += lightness[k, 2] * (stiffness[k, 5] * turn) ** 2
+        rounding += light_u * (stiffness[k, 0] * place) ** 2 + light_v * (stiffness[k, 3] * place) ** 2
+        rounding += (turn_a + turn_b) * (stiffness[k, 5] * turn) ** 2
+        arc = geometry[k, ARC] * kink
+        deformation[k, 0], deformation[k, 1], deformation[k, 2] = u - arc * kink, v, kink
+        gradient[k, E_X], gradient[k, E_Y], gradient[k, HOLDS] = c, s, 1.0
+        gradient[k, U_A], gradient[k, U_B] = u_a + 2.0 * arc, u_b - 2.0 * arc
+        gradient[k, V_A], gradient[k, V_B] = v_a, v_b
         if lag != 0.0:
-            x, y, z = rates(jacobian, k, last, ia, last, ib)
+            x, y, z = rates(gradient, k, last, ia, last, ib)
             deformation[k, 0] -= lag * x
             deformation[k, 1] -= lag * y
             deformation[k, 2] -= lag * z
     settings[at.ROUNDING] = (_EPSILON * settings[at.STEP]) ** 2 * rounding
 
 
-@njit(inline="always", error_model="numpy")
+@kernel
+def turned(body, x, y):  # type: ignore[no-untyped-def]
+    """A vector in body coordinates, in the world's."""
+    c, s = body[COSINE], body[SINE]
+    return c * x - s * y, s * x + c * y
+
+
+@kernel
 def frame(a, b, geometry, k, angle_a, angle_b):  # type: ignore[no-untyped-def]
     """Cosine and sine of ψ; halfway between the two bodies' axes without an angle function, while they are near."""
     alpha = geometry[k, TURN]
     if alpha == 0.5 and abs(angle_b - angle_a) < 1.0:
-        c = (
-            a[COSINE] * geometry[k, AXIS_A]
-            - a[SINE] * geometry[k, AXIS_A + 1]
-            + b[COSINE] * geometry[k, AXIS_B]
-            - b[SINE] * geometry[k, AXIS_B + 1]
-        )
-        s = (
-            a[SINE] * geometry[k, AXIS_A]
-            + a[COSINE] * geometry[k, AXIS_A + 1]
-            + b[SINE] * geometry[k, AXIS_B]
-            + b[COSINE] * geometry[k, AXIS_B + 1]
-        )
+        ax, ay = turned(a, geometry[k, AXIS_A], geometry[k, AXIS_A + 1])
+        bx, by = turned(b, geometry[k, AXIS_B], geometry[k, AXIS_B + 1])
+        c, s = ax + bx, ay + by
         size = 1.0 / math.sqrt(c * c + s * s)
         return c * size, s * size
     psi = (1.0 - alpha) * angle_a + alpha * angle_b
     return math.cos(psi), math.sin(psi)
 
 
-@njit(inline="always", error_model="numpy")
-def rates(j, k, va, ia, vb, ib):  # type: ignore[no-untyped-def]
-    """J of joint k times the velocities of its two bodies, rows ia of va and ib of vb."""
-    a0, a1, a2 = va[ia, 0], va[ia, 1], va[ia, 2]
-    b0, b1, b2 = vb[ib, 0], vb[ib, 1], vb[ib, 2]
+@kernel
+def rates(gradient, k, va, ia, vb, ib):  # type: ignore[no-untyped-def]
+    """u̇, v̇ and θ̇ of joint k at the velocities of its two bodies, rows ia of va and ib of vb."""
+    c, s, spin_a, spin_b = gradient[k, E_X], gradient[k, E_Y], va[ia, 2], vb[ib, 2]
+    x, y = vb[ib, 0] - va[ia, 0], vb[ib, 1] - va[ia, 1]
     return (
-        j[k, 0] * a0 + j[k, 1] * a1 + j[k, 2] * a2 + j[k, 3] * b0 + j[k, 4] * b1 + j[k, 5] * b2,
-        j[k, 6] * a0 + j[k, 7] * a1 + j[k, 8] * a2 + j[k, 9] * b0 + j[k, 10] * b1 + j[k, 11] * b2,
-        j[k, 14] * a2 + j[k, 17] * b2,
+        c * x + s * y + gradient[k, U_A] * spin_a + gradient[k, U_B] * spin_b,
+        c * y - s * x + gradient[k, V_A] * spin_a + gradient[k, V_B] * spin_b,
+        gradient[k, HOLDS] * (spin_b - spin_a),
     )
+
+
+@kernel
+def impulses(gradient, k, x, y, z):  # type: ignore[no-untyped-def]
+    """What a joint's impulses do to its bodies: momentum x, y of b, which a gives, and moments on a and on b."""
+    c, s, turn = gradient[k, E_X], gradient[k, E_Y], gradient[k, HOLDS] * z
+    on_a = gradient[k, U_A] * x + gradient[k, V_A] * y - turn
+    on_b = gradient[k, U_B] * x + gradient[k, V_B] * y + turn
+    return c * x - s * y, s * x + c * y, on_a, on_b

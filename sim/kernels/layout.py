@@ -43,7 +43,7 @@ _FIRST_ADDRESS = 25
     JOINT_SLOT,  # (joints,) int64
     SETTINGS,  # (settings,)
     LEDGER,  # (ledger,)
-    JACOBIAN,  # (joints, 18): rows u, v, θ; columns a's vx vy ω, b's vx vy ω
+    GRADIENT,  # (joints, 8): see below
     DEFORMATION,  # (joints, 3): q at the step's start, less the part of the old velocities
     LIGHTNESS,  # (joints, 3): diagonal of J M⁻¹ Jᵀ
     IMPULSE,  # (joints, 3): λ
@@ -88,6 +88,11 @@ LEDGER_WORDS = 8
 # over the square of the rotation.
 ANCHOR_A, ANCHOR_B, REST_A, REST_B, TURN, AXIS_A, AXIS_B, ARC = 0, 2, 4, 5, 6, 7, 9, 11
 GEOMETRY_WORDS = 12
+
+# Gradient of a joint's deformation: axis e of its frame; u̇ and v̇ per rate of rotation of a and of b; 1, or 0
+# when the joint does not hold and all of these are 0. A word is spare, so that a row is a cache line.
+E_X, E_Y, U_A, U_B, V_A, V_B, HOLDS = range(7)
+GRADIENT_WORDS = 8
 
 # Limits of a joint: plastic elongation, slip and rotation at which it breaks, whether compression counts (1) or not.
 LIMITS_WORDS = 4

@@ -18,16 +18,11 @@ part of s, with c / h(β + δ) in D.
 
 import math
 
-from numba import njit
-
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import factorise_matrix, solve
 from sim.kernels.layout import STEP
 from sim.kernels.residual import (
-    LAWS,
-    STIFFNESS,
-    TANGENTS,
     advance,
     descent,
     gather,
@@ -35,8 +30,12 @@ from sim.kernels.residual import (
     motion_scale,
     reach_of,
     respond,
+    respond_along_lines,
+    take_last_tangents,
+    take_stiffness,
 )
 from sim.kernels.spread import advance_spread, along, spread_residual, spread_step
+from sim.memory import kernel
 
 MOST_NEWTON_STEPS = 200
 #: After so many steps, start again from the elastic prediction.
@@ -46,7 +45,7 @@ _KINK = 1e-3
 _MOST_REFINEMENTS = 5
 
 
-@njit(error_model="numpy")
+@kernel
 def restart(t):  # type: ignore[no-untyped-def]
     """Apply the last step's impulses, which a step starts from, to velocities without joints.
 
@@ -63,18 +62,32 @@ def restart(t):  # type: ignore[no-untyped-def]
         advance_spread(t, amount)
 
 
-@njit(error_model="numpy")
-def measure(t, by):  # type: ignore[no-untyped-def]
+@kernel
+def measure(t):  # type: ignore[no-untyped-def]
     """Residuals of the joints and of the load pattern's spring; returns their energy, that of all, and the spring's."""
-    error, size = respond(t, by)
-    spring = 0.0
-    if t[at.SPREAD] == 1:
-        spring, light = spread_residual(t)
-        error += light * spring * spring
-    return error, size, spring
+    error, size = respond(t)
+    spring, of_spring = pull(t)
+    return error + of_spring, size, spring
 
 
-@njit(error_model="numpy")
+@kernel
+def measure_along_lines(t):  # type: ignore[no-untyped-def]
+    """As `measure`, for laws that are lines."""
+    error, size = respond_along_lines(t)
+    spring, of_spring = pull(t)
+    return error + of_spring, size, spring
+
+
+@kernel
+def pull(t):  # type: ignore[no-untyped-def]
+    """Residual of the load pattern's spring, if there is one, and its energy."""
+    if t[at.SPREAD] == 0:
+        return 0.0, 0.0
+    spring, light = spread_residual(t)
+    return spring, light * spring * spring
+
+
+@kernel
 def newton_direction(t, factor, spring):  # type: ignore[no-untyped-def]
     """ΔV and Δλ with the factor at hand; returns how fast the energy falls along ΔV, and the spring's ΔΛ."""
     solution, change, fall = views.per_body(t, at.SOLUTION), 0.0, 0.0
@@ -86,16 +99,16 @@ def newton_direction(t, factor, spring):  # type: ignore[no-untyped-def]
     return fall + linearise(t, factor, 1.0), change
 
 
-@njit(error_model="numpy")
+@kernel
 def go(t, length, spring_change):  # type: ignore[no-untyped-def]
     """Go ``length`` of the direction found; returns what `measure` does there, for the laws as they are."""
     advance(t, length)
     if t[at.SPREAD] == 1:
         advance_spread(t, length * spring_change)
-    return measure(t, LAWS)
+    return measure(t)
 
 
-@njit(error_model="numpy")
+@kernel
 def predict(t, factor, enough):  # type: ignore[no-untyped-def]
     """The first solve of a step: goes on with the tangents of a last step that flowed, or takes all joints as elastic.
 
@@ -104,16 +117,18 @@ def predict(t, factor, enough):  # type: ignore[no-untyped-def]
     """
     if t[at.FLOWING] == 0:
         return predict_elastic(t, factor, enough)
-    _, _, spring = measure(t, TANGENTS)
+    take_last_tangents(t)
+    _, _, spring = measure_along_lines(t)
     factorise_matrix(t, factor)
     _, change = newton_direction(t, factor, spring)
     return go(t, 1.0, change)
 
 
-@njit(error_model="numpy")
+@kernel
 def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
     """Take every joint as elastic; refined where joints are so stiff that they seem to yield by rounding alone."""
-    before, size, spring = measure(t, STIFFNESS)
+    take_stiffness(t)
+    before, size, spring = measure_along_lines(t)
     factorise_matrix(t, factor)
     error = before
     for _ in range(_MOST_REFINEMENTS):
@@ -121,15 +136,16 @@ def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
         error, size, spring = go(t, 1.0, change)
         if error <= enough * (size + motion_scale(t)):
             break
-        rest, _, spring = measure(t, STIFFNESS)
+        take_stiffness(t)
+        rest, _, spring = measure_along_lines(t)
         if rest > 0.1 * before or rest <= enough * size:
-            error, size, spring = measure(t, LAWS)
+            error, size, spring = measure(t)
             break
         before = rest
     return error, size, spring
 
 
-@njit(error_model="numpy")
+@kernel
 def iterate(t, predicting):  # type: ignore[no-untyped-def]
     """Newton's method from the present velocities; returns steps taken, whether it converged, and the residual.
 
@@ -142,7 +158,7 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
         error, size, spring = predict(t, factor, tolerance)
         steps = 1
     else:
-        error, size, spring = measure(t, LAWS)
+        error, size, spring = measure(t)
     motion = motion_scale(t)
     converged = error <= tolerance * (size + motion) + rounding
     best = error
@@ -163,7 +179,7 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
     return steps, converged, math.sqrt(error / total) if total > 0.0 else 0.0
 
 
-@njit(error_model="numpy")
+@kernel
 def search(t, start, change, tolerance, motion):  # type: ignore[no-untyped-def]
     """Line search: how far to go along the direction found; returns what `measure` does there.
 

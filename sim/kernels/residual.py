@@ -3,12 +3,9 @@
 See `newton` for the equations.
 """
 
-import numpy as np
-from numba import njit
-
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.kinematics import rates
+from sim.kernels.kinematics import impulses, rates
 from sim.kernels.layout import (
     INERTIA_I,
     INERTIA_M,
@@ -19,77 +16,105 @@ from sim.kernels.layout import (
     STEP,
     TANGENT,
 )
-from sim.memory import call_law
-
-#: How `respond` takes a joint: by its law, or by a line with its stiffness or its last tangent.
-LAWS, STIFFNESS, TANGENTS = 0, 1, 2
+from sim.memory import call_law, kernel
 
 
-@njit(error_model="numpy")
+@kernel
 def reach_of(t):  # type: ignore[no-untyped-def]
     """How far q* follows the new velocities: (β + δ) h [s]."""
     settings = views.settings(t)
     return settings[STEP] * (settings[at.BETA] + settings[at.DELTA])
 
 
-@njit(error_model="numpy")
-def respond(t, by):  # type: ignore[no-untyped-def]
-    """Residual r of every joint at the present velocities; returns its energy, and that of the impulses.
-
-    To predict, every law is replaced by a line through where the last step ended, with the stiffness of the joint or
-    with its tangent there. At that point a law does not flow; at the step's start it may seem to, where bodies moved
-    straight while they turned.
-    """
+@kernel
+def respond(t):  # type: ignore[no-untyped-def]
+    """Residual r of every joint at the present velocities, by its law; returns its energy, and that of the impulses."""
     joint_bodies, laws, scale = views.joint_bodies(t), views.laws(t), views.scale(t)
-    stiffness, damping, jacobian = views.stiffness(t), views.damping(t), views.jacobian(t)
-    deformation, lightness = views.per_joint(t, at.DEFORMATION), views.per_joint(t, at.LIGHTNESS)
-    impulse, residual = views.per_joint(t, at.IMPULSE), views.per_joint(t, at.RESIDUAL)
-    velocity, response, result = views.per_body(t, at.VELOCITY), views.response(t), views.result(t)
-    h, reach = views.settings(t)[STEP], reach_of(t)
-    old_reach, line = reach / views.settings(t)[at.STEP_RATIO], np.empty(6 if by != LAWS else 0)
-    error, size = 0.0, 0.0
+    gradient, deformation = views.gradient(t), views.per_joint(t, at.DEFORMATION)
+    residual, velocity, response = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.VELOCITY), views.response(t)
+    reach, error, size = reach_of(t), 0.0, 0.0
     for k in range(t[at.JOINTS]):
-        x, y, z = rates(jacobian, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
-        u, v, turn = deformation[k, 0] + reach * x, deformation[k, 1] + reach * y, deformation[k, 2] + reach * z
-        out = t[at.RESPONSE] + 8 * RESPONSE_WORDS * k
-        if by != LAWS:
-            if by == STIFFNESS:
-                for i in range(6):
-                    line[i] = stiffness[k, i]
-            else:
-                for i in range(6):
-                    line[i] = response[k, TANGENT + i]
-                line[0] -= damping[k, 0] / old_reach
-                line[3] -= damping[k, 1] / old_reach
-                line[5] -= damping[k, 2] / old_reach
-            call_law(laws[k, 0], laws[k, 2], laws[k, 3], t[at.RESULT] + 8 * RESULT_WORDS * k, out)
-            u, v, turn = u - result[k, 0], v - result[k, 1], turn - result[k, 2]
-            response[k, 0] += line[0] * u + line[1] * v + line[2] * turn
-            response[k, 1] += line[1] * u + line[3] * v + line[4] * turn
-            response[k, 2] += line[2] * u + line[4] * v + line[5] * turn
-            for i in range(6):
-                response[k, TANGENT + i] = line[i]
-        else:
-            # The joint's row of residuals holds q* until they are known.
-            residual[k, 0], residual[k, 1], residual[k, 2] = u, v, turn
-            call_law(laws[k, 0], laws[k, 2], laws[k, 3], t[at.RESIDUAL] + 24 * k, out)
-            if scale[k] != 1.0:
-                for i in range(9):
-                    response[k, i] *= scale[k]
-        response[k, 0] += damping[k, 0] * x
-        response[k, 1] += damping[k, 1] * y
-        response[k, 2] += damping[k, 2] * z
-        response[k, 3] += damping[k, 0] / reach
-        response[k, 6] += damping[k, 1] / reach
-        response[k, 8] += damping[k, 2] / reach
-        for i in range(3):
-            residual[k, i] = -h * response[k, i] - impulse[k, i]
-            error += lightness[k, i] * residual[k, i] * residual[k, i]
-            size += lightness[k, i] * impulse[k, i] * impulse[k, i]
+        x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
+        # The joint's row of residuals holds q* until they are known.
+        residual[k, 0], residual[k, 1] = deformation[k, 0] + reach * x, deformation[k, 1] + reach * y
+        residual[k, 2] = deformation[k, 2] + reach * z
+        call_law(laws[k, 0], laws[k, 2], laws[k, 3], t[at.RESIDUAL] + 24 * k, t[at.RESPONSE] + 8 * RESPONSE_WORDS * k)
+        if scale[k] != 1.0:
+            for i in range(RESPONSE_WORDS):
+                response[k, i] *= scale[k]
+        of_residual, of_impulse = remain(t, k, reach, x, y, z)
+        error, size = error + of_residual, size + of_impulse
     return error, size
 
 
-@njit(error_model="numpy")
+@kernel
+def respond_along_lines(t):  # type: ignore[no-untyped-def]
+    """As `respond`, but every law is a line through where the last step ended, with the tangent in its response.
+
+    At that point a law does not flow; at the step's start it may seem to, where bodies moved straight while they
+    turned.
+    """
+    joint_bodies, laws, result = views.joint_bodies(t), views.laws(t), views.result(t)
+    gradient, deformation = views.gradient(t), views.per_joint(t, at.DEFORMATION)
+    velocity, response = views.per_body(t, at.VELOCITY), views.response(t)
+    reach, error, size = reach_of(t), 0.0, 0.0
+    for k in range(t[at.JOINTS]):
+        x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
+        d00, d01, d02 = response[k, TANGENT], response[k, TANGENT + 1], response[k, TANGENT + 2]
+        d11, d12, d22 = response[k, TANGENT + 3], response[k, TANGENT + 4], response[k, TANGENT + 5]
+        end, out = t[at.RESULT] + 8 * RESULT_WORDS * k, t[at.RESPONSE] + 8 * RESPONSE_WORDS * k
+        call_law(laws[k, 0], laws[k, 2], laws[k, 3], end, out)
+        u, v = deformation[k, 0] + reach * x - result[k, 0], deformation[k, 1] + reach * y - result[k, 1]
+        turn = deformation[k, 2] + reach * z - result[k, 2]
+        response[k, 0] += d00 * u + d01 * v + d02 * turn
+        response[k, 1] += d01 * u + d11 * v + d12 * turn
+        response[k, 2] += d02 * u + d12 * v + d22 * turn
+        response[k, TANGENT], response[k, TANGENT + 1], response[k, TANGENT + 2] = d00, d01, d02
+        response[k, TANGENT + 3], response[k, TANGENT + 4], response[k, TANGENT + 5] = d11, d12, d22
+        of_residual, of_impulse = remain(t, k, reach, x, y, z)
+        error, size = error + of_residual, size + of_impulse
+    return error, size
+
+
+@kernel
+def take_stiffness(t):  # type: ignore[no-untyped-def]
+    """Tangents for `respond_along_lines`: those of joints that are elastic."""
+    response, stiffness = views.response(t), views.stiffness(t)
+    for k in range(t[at.JOINTS]):
+        for i in range(6):
+            response[k, TANGENT + i] = stiffness[k, i]
+
+
+@kernel
+def take_last_tangents(t):  # type: ignore[no-untyped-def]
+    """Tangents for `respond_along_lines`: those that the last step ended with, without their viscous part."""
+    response, damping, old_reach = views.response(t), views.damping(t), reach_of(t) / views.settings(t)[at.STEP_RATIO]
+    for k in range(t[at.JOINTS]):
+        response[k, TANGENT] -= damping[k, 0] / old_reach
+        response[k, TANGENT + 3] -= damping[k, 1] / old_reach
+        response[k, TANGENT + 5] -= damping[k, 2] / old_reach
+
+
+@kernel
+def remain(t, k, reach, x, y, z):  # type: ignore[no-untyped-def]
+    """Add joint k's viscous forces to its response, and find its residual; returns its energy, and the impulse's."""
+    damping, response, lightness = views.damping(t), views.response(t), views.per_joint(t, at.LIGHTNESS)
+    impulse, residual, h = views.per_joint(t, at.IMPULSE), views.per_joint(t, at.RESIDUAL), views.settings(t)[STEP]
+    response[k, 0] += damping[k, 0] * x
+    response[k, 1] += damping[k, 1] * y
+    response[k, 2] += damping[k, 2] * z
+    response[k, TANGENT] += damping[k, 0] / reach
+    response[k, TANGENT + 3] += damping[k, 1] / reach
+    response[k, TANGENT + 5] += damping[k, 2] / reach
+    error, size = 0.0, 0.0
+    for i in range(3):
+        residual[k, i] = -h * response[k, i] - impulse[k, i]
+        error += lightness[k, i] * residual[k, i] * residual[k, i]
+        size += lightness[k, i] * impulse[k, i] * impulse[k, i]
+    return error, size
+
+
+@kernel
 def motion_scale(t):  # type: ignore[no-untyped-def]
     """Σ m v² + I ω² of the dynamic bodies."""
     weight, velocity = views.weight(t), views.per_body(t, at.VELOCITY)
@@ -100,36 +125,35 @@ def motion_scale(t):  # type: ignore[no-untyped-def]
     return total
 
 
-@njit(error_model="numpy")
+@kernel
 def gather(t, per_joint, out):  # type: ignore[no-untyped-def]
     """Jᵀ times a vector of joint impulses."""
-    joint_bodies, jacobian, moving = views.joint_bodies(t), views.jacobian(t), t[at.MOVING]
+    joint_bodies, gradient, moving = views.joint_bodies(t), views.gradient(t), t[at.MOVING]
     for i in range(moving):
         out[i, 0], out[i, 1], out[i, 2] = 0.0, 0.0, 0.0
     for k in range(t[at.JOINTS]):
-        r0, r1, r2 = per_joint[k, 0], per_joint[k, 1], per_joint[k, 2]
-        px, py = jacobian[k, 3] * r0 + jacobian[k, 9] * r1, jacobian[k, 4] * r0 + jacobian[k, 10] * r1
+        px, py, on_a, on_b = impulses(gradient, k, per_joint[k, 0], per_joint[k, 1], per_joint[k, 2])
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         if ia < moving:
             out[ia, 0] -= px
             out[ia, 1] -= py
-            out[ia, 2] += jacobian[k, 2] * r0 + jacobian[k, 8] * r1 + jacobian[k, 14] * r2
+            out[ia, 2] += on_a
         if ib < moving:
             out[ib, 0] += px
             out[ib, 1] += py
-            out[ib, 2] += jacobian[k, 5] * r0 + jacobian[k, 11] * r1 + jacobian[k, 17] * r2
+            out[ib, 2] += on_b
 
 
-@njit(error_model="numpy")
+@kernel
 def linearise(t, factor, with_residual):  # type: ignore[no-untyped-def]
     """Δλ = r - factor D J ΔV, r only ``with_residual`` (1 or 0); returns r · J ΔV, how fast the energy falls."""
-    joint_bodies, jacobian, response = views.joint_bodies(t), views.jacobian(t), views.response(t)
+    joint_bodies, gradient, response = views.joint_bodies(t), views.gradient(t), views.response(t)
     residual, solution = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.SOLUTION)
     slope, d = views.per_joint(t, at.SLOPE), TANGENT
     fall = 0.0
     for k in range(t[at.JOINTS]):
         r0, r1, r2 = with_residual * residual[k, 0], with_residual * residual[k, 1], with_residual * residual[k, 2]
-        x, y, z = rates(jacobian, k, solution, joint_bodies[k, 0], solution, joint_bodies[k, 1])
+        x, y, z = rates(gradient, k, solution, joint_bodies[k, 0], solution, joint_bodies[k, 1])
         fall += r0 * x + r1 * y + r2 * z
         x, y, z = factor * x, factor * y, factor * z
         slope[k, 0] = r0 - (response[k, d] * x + response[k, d + 1] * y + response[k, d + 2] * z)
@@ -138,22 +162,22 @@ def linearise(t, factor, with_residual):  # type: ignore[no-untyped-def]
     return fall
 
 
-@njit(error_model="numpy")
+@kernel
 def descent(t):  # type: ignore[no-untyped-def]
     """r · J ΔV at the present residual."""
-    joint_bodies, jacobian = views.joint_bodies(t), views.jacobian(t)
+    joint_bodies, gradient = views.joint_bodies(t), views.gradient(t)
     residual, direction = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.SOLUTION)
     total = 0.0
     for k in range(t[at.JOINTS]):
-        x, y, z = rates(jacobian, k, direction, joint_bodies[k, 0], direction, joint_bodies[k, 1])
+        x, y, z = rates(gradient, k, direction, joint_bodies[k, 0], direction, joint_bodies[k, 1])
         total += residual[k, 0] * x + residual[k, 1] * y + residual[k, 2] * z
     return total
 
 
-@njit(error_model="numpy")
+@kernel
 def advance(t, share):  # type: ignore[no-untyped-def]
     """λ += share Δλ and V += share M⁻¹ Jᵀ Δλ."""
-    joint_bodies, jacobian, weight = views.joint_bodies(t), views.jacobian(t), views.weight(t)
+    joint_bodies, gradient, weight = views.joint_bodies(t), views.gradient(t), views.weight(t)
     slope, impulse = views.per_joint(t, at.SLOPE), views.per_joint(t, at.IMPULSE)
     velocity, moving = views.per_body(t, at.VELOCITY), t[at.MOVING]
     for k in range(t[at.JOINTS]):
@@ -161,15 +185,13 @@ def advance(t, share):  # type: ignore[no-untyped-def]
         impulse[k, 0] += x
         impulse[k, 1] += y
         impulse[k, 2] += z
-        px, py = jacobian[k, 3] * x + jacobian[k, 9] * y, jacobian[k, 4] * x + jacobian[k, 10] * y
+        px, py, on_a, on_b = impulses(gradient, k, x, y, z)
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         if ia < moving:
-            light, nimble = weight[ia, INVERSE_M], weight[ia, INVERSE_I]
-            velocity[ia, 0] -= px * light
-            velocity[ia, 1] -= py * light
-            velocity[ia, 2] += (jacobian[k, 2] * x + jacobian[k, 8] * y + jacobian[k, 14] * z) * nimble
+            velocity[ia, 0] -= px * weight[ia, INVERSE_M]
+            velocity[ia, 1] -= py * weight[ia, INVERSE_M]
+            velocity[ia, 2] += on_a * weight[ia, INVERSE_I]
         if ib < moving:
-            light, nimble = weight[ib, INVERSE_M], weight[ib, INVERSE_I]
-            velocity[ib, 0] += px * light
-            velocity[ib, 1] += py * light
-            velocity[ib, 2] += (jacobian[k, 5] * x + jacobian[k, 11] * y + jacobian[k, 17] * z) * nimble
+            velocity[ib, 0] += px * weight[ib, INVERSE_M]
+            velocity[ib, 1] += py * weight[ib, INVERSE_M]
+            velocity[ib, 2] += on_b * weight[ib, INVERSE_I]

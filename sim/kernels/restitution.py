@@ -10,8 +10,6 @@ the contact's impulse j does the work j·v₁ over that move, of which implicit 
 for. Without any bounce j·v₁ is not positive, and nothing is created.
 """
 
-from numba import njit
-
 from sim.chipmunk import BODY_WORDS, CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE, CONTACT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
@@ -19,13 +17,13 @@ from sim.kernels.contacts import other_velocity, own_velocity
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.kinematics import rates
 from sim.kernels.layout import BETA, CACHED, OTHER_START, OWNER_A, OWNER_B, STEP, STEP_RATIO, TANGENT, WANTED, WHERE
-from sim.memory import floats
+from sim.memory import floats, kernel
 
 #: Times that a bounce is halved before none is asked for.
 MOST_HALVINGS = 6
 
 
-@njit(error_model="numpy")
+@kernel
 def bounces(head):  # type: ignore[no-untyped-def]
     """Whether any contact of a group in implicit Euler asks for a bounce."""
     c = head
@@ -39,7 +37,7 @@ def bounces(head):  # type: ignore[no-untyped-def]
     return False
 
 
-@njit(error_model="numpy")
+@kernel
 def creates_energy(head):  # type: ignore[no-untyped-def]
     """Whether the contacts of a group do more work over the next move than the step spends."""
     work, spent, c = 0.0, 0.0, head
@@ -68,10 +66,10 @@ def creates_energy(head):  # type: ignore[no-untyped-def]
     return work > spent
 
 
-@njit(error_model="numpy")
+@kernel
 def spent_by(t):  # type: ignore[no-untyped-def]
     """What implicit Euler dissipates in a structure's bodies, and in its joints as they yield now [J]."""
-    body_at, joint_bodies, jacobian = views.body_at(t), views.joint_bodies(t), views.jacobian(t)
+    body_at, joint_bodies, gradient = views.body_at(t), views.joint_bodies(t), views.gradient(t)
     start, velocity = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.VELOCITY)
     response, h, total = views.response(t), views.settings(t)[STEP], 0.0
     for i in range(t[at.MOVING]):
@@ -79,14 +77,14 @@ def spent_by(t):  # type: ignore[no-untyped-def]
         x, y, w = velocity[i, 0] - start[i, 0], velocity[i, 1] - start[i, 1], velocity[i, 2] - start[i, 2]
         total += mass_of(b) * (x * x + y * y) + moment_of(b) * w * w
     for k in range(t[at.JOINTS]):
-        u, v, w = rates(jacobian, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
+        u, v, w = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         d, u, v, w = response[k], h * u, h * v, h * w
         total += d[TANGENT] * u * u + d[TANGENT + 3] * v * v + d[TANGENT + 5] * w * w
         total += 2.0 * (d[TANGENT + 1] * u * v + d[TANGENT + 2] * u * w + d[TANGENT + 4] * v * w)
     return 0.5 * total
 
 
-@njit(error_model="numpy")
+@kernel
 def bounce_less(head, share):  # type: ignore[no-untyped-def]
     """Ask for a ``share`` of the bounces of a group."""
     c = head

@@ -12,15 +12,14 @@ changes the load factor by ΔΛ, and the velocities by ΔV:
     ΔΛ = (ρ - c p·z) / (1 + c p·y),   ΔV = z + ΔΛ y.
 """
 
-from numba import njit
-
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import solve
 from sim.kernels.layout import BETA, DELTA, INVERSE_I, INVERSE_M, SPREAD_GAP, SPREAD_IMPULSE, SPREAD_STIFFNESS, STEP
+from sim.memory import kernel
 
 
-@njit(error_model="numpy")
+@kernel
 def along(t, pattern, vector):  # type: ignore[no-untyped-def]
     """p · a vector over the bodies."""
     total = 0.0
@@ -29,7 +28,7 @@ def along(t, pattern, vector):  # type: ignore[no-untyped-def]
     return total
 
 
-@njit(error_model="numpy")
+@kernel
 def spread_residual(t):  # type: ignore[no-untyped-def]
     """Residual impulse ρ of the spring, in units of the load factor, and p · M⁻¹ p."""
     settings, pattern, weight = views.settings(t), views.per_body(t, at.PATTERN), views.weight(t)
@@ -43,7 +42,7 @@ def spread_residual(t):  # type: ignore[no-untyped-def]
     return h * k * (settings[SPREAD_GAP] - moved) - settings[SPREAD_IMPULSE], light
 
 
-@njit(error_model="numpy")
+@kernel
 def spread_step(t, residual):  # type: ignore[no-untyped-def]
     """Turn z into ΔV in the structure's solution, which it leaves y in its image for; returns ΔΛ."""
     settings, pattern = views.settings(t), views.per_body(t, at.PATTERN)
@@ -60,7 +59,7 @@ def spread_step(t, residual):  # type: ignore[no-untyped-def]
     return change
 
 
-@njit(error_model="numpy")
+@kernel
 def advance_spread(t, amount):  # type: ignore[no-untyped-def]
     """Λ += amount and V += M⁻¹ p amount."""
     settings, pattern, weight = views.settings(t), views.per_body(t, at.PATTERN), views.weight(t)

@@ -36,7 +36,7 @@ from sim.kernels.kinematics import leave_out, prepare
 from sim.kernels.layout import CACHED, INERTIA_I, LEDGER_CONTACT, LEDGER_NUMERICAL, LEDGER_PLASTIC, WHERE
 from sim.kernels.newton import iterate, restart
 from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
-from sim.memory import call_notice, floats
+from sim.memory import call_notice, clear, floats
 
 _MOST_ROUNDS = 40
 _SETTLED = 1e-6
@@ -59,7 +59,6 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     settings[at.STEP_RATIO] = ratio if ratio > 0.0 else 1.0
     settings[at.SPREAD_IMPULSE] *= ratio * t[at.SPREAD]
     t[at.FRESH] = 1
-    views.scale(t)[:] = 1.0
     start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
     load_velocities(t, start)
     for i in range(t[at.MOVING]):
@@ -69,10 +68,11 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     find_shifts(t, h)
     t[at.FREE] = 0 if leave_out(t) else 1
     # The last step's impulses, to start from.
-    active, impulse = views.active(t), views.per_joint(t, at.IMPULSE)
+    active, impulse, scale = views.active(t), views.per_joint(t, at.IMPULSE), views.scale(t)
     for k in range(n):
         for i in range(3):
             impulse[k, i] *= ratio * active[k]
+        scale[k] = 1.0
     weigh(t)
     prepare(t)
     velocity, written, weight = views.per_body(t, at.VELOCITY), views.per_body(t, at.WRITTEN), views.weight(t)
@@ -81,8 +81,8 @@ def begin(c, h):  # type: ignore[no-untyped-def]
             velocity[i, axis] = written[i, axis] = start[i, axis]
     for i in range(t[at.MOVING]):
         velocity[i, 2] *= moment_of(floats(body_at[i], BODY_WORDS)) / weight[i, INERTIA_I]
-    views.per_body(t, at.EXTERNAL)[:, :] = 0.0
-    views.per_body(t, at.CONTACT_IMPULSE)[:, :] = 0.0
+    clear(views.per_body(t, at.EXTERNAL))
+    clear(views.per_body(t, at.CONTACT_IMPULSE))
     t[at.PUSHED_APART] = 0
     collect(c, t)
 
@@ -286,7 +286,7 @@ def refuse(c):  # type: ignore[no-untyped-def]
     while member != 0:
         t = views.control(member)
         t[at.FAULT] = max(t[at.FAULT], 0)
-        views.per_joint(t, at.IMPULSE)[:, :] = 0.0
+        clear(views.per_joint(t, at.IMPULSE))
         h, body_at = views.settings(t)[at.STEP], views.body_at(t)
         before, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
         for i in range(t[at.MOVING]):
@@ -320,7 +320,7 @@ def finish(c):  # type: ignore[no-untyped-def]
             position[i, 0], position[i, 1], position[i, 2] = b[X], b[X + 1], b[ANGLE]
             shift[i, 0], shift[i, 1], shift[i, 2] = b[BIAS_VX], b[BIAS_VX + 1], b[BIAS_SPIN]
     else:
-        shift[:, :] = 0.0
+        clear(shift)
     t[at.HEAD], t[at.NEXT] = 0, 0
     if t[at.FAULT] >= 0 or t[at.BROKE] > 0 or t[at.MISSED] > 0:
         call_notice(t[at.NOTICE], t[at.KEY])

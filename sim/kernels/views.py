@@ -1,154 +1,127 @@
-"""The arrays of a structure, by its control table."""
+"""The arrays of a structure: functions of its control table, a numpy array each.
 
-from numba import njit
+Every kernel begins with some of them, so they are intrinsics: a few instructions where they are called, and nothing
+for Numba to analyse.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+from numba.np.arrayobj import make_array
 
 from sim.kernels import layout as at
-from sim.memory import floats, integers, table
+from sim.memory import WORD, array_at
+
+_FLOATS, _INTEGERS = types.float64, types.int64
 
 
-@njit
-def control(address):  # type: ignore[no-untyped-def]
+def _word(context: Any, builder: Any, table: Any, signature: Any, index: Any) -> Any:
+    """Code that reads a word of a control table, the first argument of ``signature``."""
+    data = make_array(signature.args[0])(context, builder, table).data
+    return builder.load(cgutils.gep(builder, data, index))
+
+
+def _vector(address: int, rows: int, kind: types.Type = _FLOATS) -> Callable[..., Any]:
+    """The array whose address is at the word ``address``, with as many entries as the word ``rows`` says."""
+
+    @intrinsic
+    def view(typing_context, t):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            start, count = (_word(context, builder, args[0], signature, WORD(word)) for word in (address, rows))
+            return array_at(context, builder, signature.return_type, start, [count])
+
+        return types.Array(kind, 1, "C")(t), generate
+
+    return view  # type: ignore[no-any-return]
+
+
+def _fixed(address: int, count: int, kind: types.Type = _FLOATS) -> Callable[..., Any]:
+    """The array of ``count`` entries whose address is at the word ``address``."""
+
+    @intrinsic
+    def view(typing_context, t):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            start = _word(context, builder, args[0], signature, WORD(address))
+            return array_at(context, builder, signature.return_type, start, [WORD(count)])
+
+        return types.Array(kind, 1, "C")(t), generate
+
+    return view  # type: ignore[no-any-return]
+
+
+def _matrix(address: int, rows: int, columns: int, kind: types.Type = _FLOATS) -> Callable[..., Any]:
+    """As `_vector`, with ``columns`` columns."""
+
+    @intrinsic
+    def view(typing_context, t):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            start, count = (_word(context, builder, args[0], signature, WORD(word)) for word in (address, rows))
+            return array_at(context, builder, signature.return_type, start, [count, WORD(columns)])
+
+        return types.Array(kind, 2, "C")(t), generate
+
+    return view  # type: ignore[no-any-return]
+
+
+def _triples(rows: int) -> Callable[..., Any]:
+    """Any array of floats with three columns, by the word of its address; the word ``rows`` says how many there are."""
+
+    @intrinsic
+    def view(typing_context, t, address):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            start, count = (_word(context, builder, args[0], signature, word) for word in (args[1], WORD(rows)))
+            return array_at(context, builder, signature.return_type, start, [count, WORD(3)])
+
+        return types.Array(_FLOATS, 2, "C")(t, types.int64), generate
+
+    return view  # type: ignore[no-any-return]
+
+
+@intrinsic
+def control(typing_context, address):  # type: ignore[no-untyped-def]
     """Control table at an address."""
-    return integers(address, at.CONTROL_WORDS)
+
+    def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+        return array_at(context, builder, signature.return_type, args[0], [WORD(at.CONTROL_WORDS)])
+
+    return types.Array(_INTEGERS, 1, "C")(types.int64), generate
 
 
-@njit
-def body_at(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.BODY_AT], t[at.BODIES])
+per_joint = _triples(at.JOINTS)
+per_body = _triples(at.BODIES)
 
+body_at = _vector(at.BODY_AT, at.BODIES, _INTEGERS)
+joint_at = _vector(at.JOINT_AT, at.JOINTS, _INTEGERS)
+joint_bodies = _matrix(at.JOINT_BODIES, at.JOINTS, 2, _INTEGERS)
+joint_slot = _vector(at.JOINT_SLOT, at.JOINTS, _INTEGERS)
+active = _vector(at.ACTIVE, at.JOINTS, _INTEGERS)
+laws = _matrix(at.LAWS, at.JOINTS, 5, _INTEGERS)
+geometry = _matrix(at.GEOMETRY, at.JOINTS, at.GEOMETRY_WORDS)
+stiffness = _matrix(at.STIFFNESS, at.JOINTS, 6)
+damping = _matrix(at.DAMPING, at.JOINTS, 3)
+limits = _matrix(at.LIMITS, at.JOINTS, at.LIMITS_WORDS)
+scale = _vector(at.SCALE, at.JOINTS)
+gradient = _matrix(at.GRADIENT, at.JOINTS, at.GRADIENT_WORDS)
+response = _matrix(at.RESPONSE, at.JOINTS, at.RESPONSE_WORDS)
+result = _matrix(at.RESULT, at.JOINTS, at.RESULT_WORDS)
 
-@njit
-def joint_at(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.JOINT_AT], t[at.JOINTS])
+shift = _matrix(at.SHIFT, at.BODIES, 6)
+weight = _matrix(at.WEIGHT, at.MOVING, at.WEIGHT_WORDS)
 
+# One more than there are moving bodies: where the last column ends.
+column_start = _vector(at.COLUMN_START, at.MOVING, _INTEGERS)
+column_rows = _vector(at.COLUMN_ROWS, at.LOWER, _INTEGERS)
+# As many as the factor fills in, which the kernels do not need to know.
+fill_targets = _fixed(at.FILL_TARGETS, 1, _INTEGERS)
+diagonal = _matrix(at.DIAGONAL, at.MOVING, 9)
+lower = _matrix(at.LOWER_BLOCKS, at.LOWER, 9)
+scaled = _matrix(at.SCALED_BLOCKS, at.LOWER, 9)
 
-@njit
-def joint_bodies(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.JOINT_BODIES], 2 * t[at.JOINTS]).reshape(t[at.JOINTS], 2)
+settings = _fixed(at.SETTINGS, at.SETTINGS_WORDS)
+ledger = _fixed(at.LEDGER, at.LEDGER_WORDS)
 
-
-@njit
-def geometry(t):  # type: ignore[no-untyped-def]
-    return table(t[at.GEOMETRY], t[at.JOINTS], at.GEOMETRY_WORDS)
-
-
-@njit
-def laws(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.LAWS], 5 * t[at.JOINTS]).reshape(t[at.JOINTS], 5)
-
-
-@njit
-def stiffness(t):  # type: ignore[no-untyped-def]
-    return table(t[at.STIFFNESS], t[at.JOINTS], 6)
-
-
-@njit
-def damping(t):  # type: ignore[no-untyped-def]
-    return table(t[at.DAMPING], t[at.JOINTS], 3)
-
-
-@njit
-def limits(t):  # type: ignore[no-untyped-def]
-    return table(t[at.LIMITS], t[at.JOINTS], at.LIMITS_WORDS)
-
-
-@njit
-def scale(t):  # type: ignore[no-untyped-def]
-    return floats(t[at.SCALE], t[at.JOINTS])
-
-
-@njit
-def active(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.ACTIVE], t[at.JOINTS])
-
-
-@njit
-def column_start(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.COLUMN_START], t[at.MOVING] + 1)
-
-
-@njit
-def column_rows(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.COLUMN_ROWS], t[at.LOWER])
-
-
-@njit
-def fill_targets(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.FILL_TARGETS], 1)
-
-
-@njit
-def joint_slot(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.JOINT_SLOT], t[at.JOINTS])
-
-
-@njit
-def settings(t):  # type: ignore[no-untyped-def]
-    return floats(t[at.SETTINGS], at.SETTINGS_WORDS)
-
-
-@njit
-def ledger(t):  # type: ignore[no-untyped-def]
-    return floats(t[at.LEDGER], at.LEDGER_WORDS)
-
-
-@njit
-def jacobian(t):  # type: ignore[no-untyped-def]
-    return table(t[at.JACOBIAN], t[at.JOINTS], 18)
-
-
-@njit
-def response(t):  # type: ignore[no-untyped-def]
-    return table(t[at.RESPONSE], t[at.JOINTS], at.RESPONSE_WORDS)
-
-
-@njit
-def result(t):  # type: ignore[no-untyped-def]
-    return table(t[at.RESULT], t[at.JOINTS], at.RESULT_WORDS)
-
-
-@njit
-def per_joint(t, word):  # type: ignore[no-untyped-def]
-    """One of the (joints, 3) arrays."""
-    return table(t[word], t[at.JOINTS], 3)
-
-
-@njit
-def per_body(t, word):  # type: ignore[no-untyped-def]
-    """One of the (bodies, 3) arrays."""
-    return table(t[word], t[at.BODIES], 3)
-
-
-@njit
-def shift(t):  # type: ignore[no-untyped-def]
-    return table(t[at.SHIFT], t[at.BODIES], 6)
-
-
-@njit
-def weight(t):  # type: ignore[no-untyped-def]
-    return table(t[at.WEIGHT], t[at.MOVING], at.WEIGHT_WORDS)
-
-
-@njit
-def diagonal(t):  # type: ignore[no-untyped-def]
-    return table(t[at.DIAGONAL], t[at.MOVING], 9)
-
-
-@njit
-def lower(t):  # type: ignore[no-untyped-def]
-    return table(t[at.LOWER_BLOCKS], t[at.LOWER], 9)
-
-
-@njit
-def scaled(t):  # type: ignore[no-untyped-def]
-    return table(t[at.SCALED_BLOCKS], t[at.LOWER], 9)
-
-
-@njit
-def places(t):  # type: ignore[no-untyped-def]
-    return integers(t[at.PLACES], at.PLACE_WORDS * t[at.ROOM]).reshape(t[at.ROOM], at.PLACE_WORDS)
-
-
-@njit
-def touches(t):  # type: ignore[no-untyped-def]
-    return table(t[at.TOUCHES], t[at.ROOM], at.TOUCH_WORDS)
+places = _matrix(at.PLACES, at.ROOM, at.PLACE_WORDS, _INTEGERS)
+touches = _matrix(at.TOUCHES, at.ROOM, at.TOUCH_WORDS)

@@ -31,15 +31,18 @@ def progress_bar(console: Console) -> Iterator[Callable[[str, float], None]]:
 
 @contextmanager
 def explained_compilation(console: Console) -> Iterator[None]:
-    """Say why the first run on a machine takes so long, if it does."""
+    """Compile the joint kernels after what is done within, and say why that takes so long, if it does."""
     timer = threading.Timer(
         _PATIENCE,
         console.print,
-        args=["Compiling the joint kernels for this machine: about a minute, once. Later runs load a cache."],
+        args=["Compiling the joint kernels for this machine: half a minute or so, once. Later runs load a cache."],
     )
     timer.daemon = True
     timer.start()
     try:
         yield
+        from sim.kernels import compiled_callbacks
+
+        compiled_callbacks()
     finally:
         timer.cancel()

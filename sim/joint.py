@@ -12,7 +12,7 @@ import pymunk
 from capacity import InputError
 from capacity.behaviour import from_elastic_rotation, reduced, stiffness_and_damping
 from sim import chipmunk
-from sim.kernels import AFTER_STEP, FUNCTIONS
+from sim.kernels import compiled_callbacks
 from sim.laws import ElasticPlastic, Law
 from sim.limits import NO_LIMITS, Limits
 
@@ -107,7 +107,8 @@ class DuctileJoint(pymunk.Constraint):
     def _attach(self, a: pymunk.Body, b: pymunk.Body) -> None:
         """Become a constraint of Chipmunk's between two bodies."""
         self._init(a, b, chipmunk.pivot(a, b))
-        chipmunk.adopt(self._constraint, FUNCTIONS, AFTER_STEP)
+        functions, after_step, _ = compiled_callbacks()
+        chipmunk.adopt(self._constraint, functions, after_step)
 
     def __getstate__(self) -> dict[str, Any]:
         """For `pickle`, `copy` and `pymunk.Space.copy`: all attributes, with the structure and its plastic state."""

@@ -51,13 +51,13 @@ class Point:
 
     def respond(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         out, q = np.empty(9), np.ascontiguousarray(q, float)
-        self.module.respond.ctypes(*(x.ctypes.data for x in (self.parameters, self.state, q, out)))
+        self.module.respond.compiled.ctypes(*(x.ctypes.data for x in (self.parameters, self.state, q, out)))
         a = out[3:]
         return out[:3], np.array([[a[0], a[1], a[2]], [a[1], a[3], a[4]], [a[2], a[4], a[5]]])
 
     def commit(self, q: np.ndarray) -> tuple[float, float]:
         out, q = np.empty(5), np.ascontiguousarray(q, float)
-        self.module.commit.ctypes(*(x.ctypes.data for x in (self.parameters, self.state, q, out)))
+        self.module.commit.compiled.ctypes(*(x.ctypes.data for x in (self.parameters, self.state, q, out)))
         return float(out[0]), float(out[1])
 
 

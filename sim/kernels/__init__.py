@@ -14,6 +14,6 @@
 | ``step``, ``callbacks`` | one step of a structure, and the functions that Chipmunk calls |
 """
 
-from sim.kernels.callbacks import AFTER_STEP, FUNCTIONS
+from sim.kernels.callbacks import compiled_callbacks
 
-__all__ = ["AFTER_STEP", "FUNCTIONS"]
+__all__ = ["compiled_callbacks"]

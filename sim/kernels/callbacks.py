@@ -6,19 +6,48 @@ files is made part of them.
 
 import hashlib
 import math
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import cfunc, types
+from numba import types
 
 from sim.chipmunk import CONTROL
+from sim.compiling import Ahead, compiled
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.step import begin, finish, solve
 from sim.memory import integers
 
+_STEP = types.void(types.int64, types.float64)
 
+
+class Callbacks(NamedTuple):
+    """Addresses for `sim.chipmunk.adopt`."""
+
+    #: Of preStep, applyCachedImpulse, applyImpulse and getImpulse.
+    functions: np.ndarray
+    after_step: int
+    #: What owns the code that they point to.
+    owners: tuple[Any, ...]
+
+
+@cache
+def compiled_callbacks() -> Callbacks:
+    """The functions, compiled when first needed: those of a step's beginning and end here, the solve beside them."""
+    impulse = get_impulse()
+    # The smallest of them tells whether the others are in the cache, too.
+    ahead = None if impulse.cache_hits else Ahead(f"from {__name__} import apply_impulse; apply_impulse()")
+    before, cached, after = pre_step(), apply_cached_impulse(), after_step()
+    if ahead is not None:
+        ahead.wait()
+    owners = before, cached, apply_impulse(), impulse, after
+    return Callbacks(np.array([owner.address for owner in owners[:4]], dtype=np.int64), after.address, owners)
+
+
+@cache
 def _digest() -> str:
     """Digest of all source that goes into the callbacks."""
     here = Path(__file__).parent
@@ -26,11 +55,15 @@ def _digest() -> str:
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
-def _compile(digest: str) -> tuple[Any, ...]:
-    """The C functions; ``digest`` makes Numba's cache of them depend on the source of what they call."""
-    step = types.void(types.int64, types.float64)
+def _with_digest(signature: Any) -> Callable[[Callable[[str], Callable[..., Any]]], Callable[[], Any]]:
+    """Compile what a function makes of the digest."""
+    return lambda make: lambda: compiled(signature, make(_digest()))
 
-    @cfunc(step, cache=True)
+
+@_with_digest(_STEP)
+def pre_step(digest: str) -> Callable[..., None]:
+    """The step begins."""
+
     def pre_step(constraint, h):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
@@ -39,19 +72,36 @@ def _compile(digest: str) -> tuple[Any, ...]:
             t[at.LEADER] = constraint
             begin(c, h)
 
-    @cfunc(step, cache=True)
+    return pre_step
+
+
+@_with_digest(_STEP)
+def apply_cached_impulse(digest: str) -> Callable[..., None]:
+    """Nothing: the first solve of a step starts from the cached impulses by itself."""
+
     def apply_cached_impulse(constraint, ratio):  # type: ignore[no-untyped-def]
-        # Nothing: the first solve of a step starts from the cached impulses by itself.
         digest  # noqa: B018
 
-    @cfunc(step, cache=True)
+    return apply_cached_impulse
+
+
+@_with_digest(_STEP)
+def apply_impulse(digest: str) -> Callable[..., None]:
+    """One of the solver's iterations."""
+
     def apply_impulse(constraint, h):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
         if views.control(c)[at.LEADER] == constraint:
             solve(c)
 
-    @cfunc(types.float64(types.int64), cache=True)
+    return apply_impulse
+
+
+@_with_digest(types.float64(types.int64))
+def get_impulse(digest: str) -> Callable[..., float]:
+    """Size of the impulse of N and Q in the last step."""
+
     def get_impulse(constraint):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         own = integers(constraint, CONTROL + 2)
@@ -59,7 +109,13 @@ def _compile(digest: str) -> tuple[Any, ...]:
         p = views.per_joint(t, at.IMPULSE)[own[CONTROL + 1]]
         return math.hypot(p[0], p[1])
 
-    @cfunc(types.void(types.int64, types.int64), cache=True)
+    return get_impulse
+
+
+@_with_digest(types.void(types.int64, types.int64))
+def after_step(digest: str) -> Callable[..., None]:
+    """The step's impulses are final."""
+
     def after_step(constraint, space):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
@@ -68,10 +124,4 @@ def _compile(digest: str) -> tuple[Any, ...]:
             t[at.LEADER] = 0
             finish(c)
 
-    return pre_step, apply_cached_impulse, apply_impulse, get_impulse, after_step
-
-
-_COMPILED = _compile(_digest())
-#: Chipmunk's table of functions for a constraint.
-FUNCTIONS = np.array([function.address for function in _COMPILED[:4]], dtype=np.int64)
-AFTER_STEP = _COMPILED[4].address
+    return after_step

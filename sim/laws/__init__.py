@@ -28,8 +28,14 @@ class Law(Protocol):
     name: str
     #: What gives way when N, Q or M yields: their names, or that of what they share.
     yields_by: tuple[str, str, str]
-    respond_address: int
-    commit_address: int
+
+    @property
+    def respond_address(self) -> int:
+        """Address of the first function."""
+
+    @property
+    def commit_address(self) -> int:
+        """Address of the second."""
 
     def capacities(self) -> tuple[float, float, float]:
         """N_max [N], Q_max [N] and M_max [N m], each when it acts alone."""

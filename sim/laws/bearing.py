@@ -6,12 +6,12 @@ Parameters in memory: k. It has no state; one word is kept because every joint h
 from dataclasses import dataclass
 
 import numpy as np
-from numba import cfunc
 
-from sim.memory import LAW_SIGNATURE, floats
+from sim.compiling import law_function
+from sim.memory import floats
 
 
-@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_function
 def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def]  # noqa: ARG001
     k, u, r = floats(parameters, 1)[0], floats(deformation, 3)[0], floats(out, 9)
     for i in range(9):
@@ -20,7 +20,7 @@ def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def
         r[0], r[3] = k * u, k
 
 
-@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_function
 def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]  # noqa: ARG001
     k, u, r = floats(parameters, 1)[0], floats(deformation, 3)[0], floats(out, 5)
     for i in range(5):
@@ -36,8 +36,8 @@ class Bearing:
 
     name = "bearing"
     yields_by = ("lifted off", "", "")
-    respond_address = respond.address
-    commit_address = commit.address
+    respond_address = respond
+    commit_address = commit
 
     def capacities(self) -> tuple[float, float, float]:
         """No force bounds it."""

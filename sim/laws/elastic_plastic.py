@@ -10,13 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import cfunc
 
 from capacity import Capacity
-from sim.memory import LAW_SIGNATURE, floats
+from sim.compiling import law_function
+from sim.memory import floats
 
 
-@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_function
 def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
     k, p, q, r = floats(parameters, 6), floats(state, 3), floats(deformation, 3), floats(out, 9)
     for i in range(3):
@@ -29,7 +29,7 @@ def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def
     r[8] = k[2] if abs(r[2]) < k[5] else 0.0
 
 
-@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_function
 def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
     k, p, q, r = floats(parameters, 6), floats(state, 3), floats(deformation, 3), floats(out, 5)
     energy, work = 0.0, 0.0
@@ -64,8 +64,8 @@ class ElasticPlastic:
 
     name = "elastic-plastic"
     yields_by = ("N", "Q", "M")
-    respond_address = respond.address
-    commit_address = commit.address
+    respond_address = respond
+    commit_address = commit
 
     @classmethod
     def of_section(cls, section: Capacity, length: float) -> ElasticPlastic:

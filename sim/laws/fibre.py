@@ -14,16 +14,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import cfunc
 
 from capacity import InputError, Material, Section, capacity
-from sim.memory import LAW_SIGNATURE, floats
+from sim.compiling import law_function
+from sim.memory import floats
 
 # Yield stress of a layer that does not yield [Pa].
 _NEVER = 1e30
 
 
-@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_function
 def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
     head, q, r = floats(parameters, 4), floats(deformation, 3), floats(out, 9)
     length, n = head[0], int(head[3])
@@ -53,7 +53,7 @@ def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def
     r[7], r[8] = 0.0, ei / length
 
 
-@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_function
 def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
     head, q, r = floats(parameters, 4), floats(deformation, 3), floats(out, 5)
     length, n = head[0], int(head[3])
@@ -121,8 +121,8 @@ class FibreSection:
 
     name = "fibre"
     yields_by = ("fibres", "Q", "fibres")
-    respond_address = respond.address
-    commit_address = commit.address
+    respond_address = respond
+    commit_address = commit
 
     @classmethod
     def of_section(

@@ -24,10 +24,11 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import cfunc, njit
+from numba import njit
 
 from capacity import FacetSurface
-from sim.memory import LAW_SIGNATURE, floats
+from sim.compiling import law_function
+from sim.memory import floats, kernel
 
 _HEAD = 8
 _ROUNDING = 1e-12
@@ -43,13 +44,13 @@ def furthest(facets, n, r, N, M):  # type: ignore[no-untyped-def]
     return most
 
 
-@njit(inline="always", error_model="numpy")
+@kernel
 def excess(facets, n, k, r, N, M):  # type: ignore[no-untyped-def]
     """By how much (N, M) exceeds facet k."""
     return facets[k] * N + facets[n + k] * M - facets[2 * n + k] - r * facets[3 * n + k]
 
 
-@njit(error_model="numpy")
+@kernel
 def nearest(facets, n, r, kN, kM, rounding, N, M, i):  # type: ignore[no-untyped-def]
     """The facet or corner of the polygon at r that is nearest to (N, M): facets i and j (or -1), multipliers λ.
 
@@ -88,7 +89,7 @@ def nearest(facets, n, r, kN, kM, rounding, N, M, i):  # type: ignore[no-untyped
     return i, -1, over, 0.0
 
 
-@njit(error_model="numpy")
+@kernel
 def weights(facets, n, i, j, li, lj, kN, kM):  # type: ignore[no-untyped-def]
     """L = Σ λ w over the facets at work, and how fast it falls as r grows."""
     wi = facets[3 * n + i]
@@ -98,7 +99,7 @@ def weights(facets, n, i, j, li, lj, kN, kM):  # type: ignore[no-untyped-def]
     return li * wi + lj * wj, (wi * wi - 2.0 * cosine * wi * wj + wj * wj) / (1.0 - cosine * cosine)
 
 
-@njit(error_model="numpy")
+@kernel
 def project(head, facets, n, N, Q, M):  # type: ignore[no-untyped-def]
     """Angle φ of Q = Q_max sin φ and the facets at work, for a trial force; Q ≥ 0."""
     kN, kQ, kM, Q_max = head[0], head[1], head[2], head[3]
@@ -128,7 +129,7 @@ def project(head, facets, n, N, Q, M):  # type: ignore[no-untyped-def]
     return phi, i, j, li, lj
 
 
-@njit(error_model="numpy")
+@kernel
 def force(head, facets, n, p, q, s):  # type: ignore[no-untyped-def]
     """Write the force at q to s; returns r, Σ λ w and the facets at work (-1 for none)."""
     kN, kQ, kM, Q_max = head[0], head[1], head[2], head[3]
@@ -152,7 +153,7 @@ def force(head, facets, n, p, q, s):  # type: ignore[no-untyped-def]
     return math.cos(phi), total, i, j
 
 
-@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_function
 def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
     head, p, q, d = floats(parameters, _HEAD), floats(state, 3), floats(deformation, 3), floats(out, 9)
     n = int(head[5])
@@ -195,7 +196,7 @@ def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def
     d[8] -= (gjj * ti * ti - 2.0 * gij * ti * tj + gii * tj * tj) / det
 
 
-@cfunc(LAW_SIGNATURE, cache=True, error_model="numpy")
+@law_function
 def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
     head, p, q, r = floats(parameters, _HEAD), floats(state, 3), floats(deformation, 3), floats(out, 5)
     n = int(head[5])
@@ -235,8 +236,8 @@ class InteractionPlastic:
 
     name = "interaction"
     yields_by = ("N-Q-M", "N-Q-M", "N-Q-M")
-    respond_address = respond.address
-    commit_address = commit.address
+    respond_address = respond
+    commit_address = commit
 
     def __post_init__(self) -> None:
         if min(self.stiffness) <= 0.0:

@@ -44,8 +44,8 @@ class RigidPlastic:
 
     name = "rigid-plastic"
     yields_by = ("N", "Q", "M")
-    respond_address = respond.address
-    commit_address = commit.address
+    respond_address = respond
+    commit_address = commit
 
     def __post_init__(self) -> None:
         if not any(0.0 < cap < math.inf for cap in self.capacity) or min(self.capacity) < 0.0:

@@ -137,7 +137,12 @@ ENGINES: dict[str, Engine] = {
         ".rs",
         "// ",
         {"": snippets.rapier},
-        _ONE_BY_ONE + _SOFT_PINS + "Limits on N and Q: read the joint's impulses and remove it. " + _FOLLOW + _BREAK,
+        _ONE_BY_ONE
+        + "Iterations are num_internal_pgs_iterations. "
+        + _SOFT_PINS
+        + "Limits on N and Q: read the joint's impulses and remove it. "
+        + _FOLLOW
+        + _BREAK,
     ),
     "godot": Engine(
         "Godot 4, GDScript",

@@ -10,6 +10,10 @@ import numpy as np
 from calibration.engines.handover import Handover, JointTerms, PushPoint
 from calibration.engines.pushing import Pushed, push_rig
 
+#: Frequency of a wheel's spring that shall bear nothing [Hz]. Without any, Box2D 2.3 multiplies by zero numbers that it
+#: never set, and where they are not finite the whole world is lost.
+_LOOSE = 1e-3
+
 
 def push_in_box2d(handover: Handover, push: PushPoint, distances: np.ndarray) -> Pushed:
     """Push pins with motors that stand still until M_max: rigid, then plastic."""
@@ -44,8 +48,10 @@ class _Box2DRig:
             )
             return
         axis = (math.cos(joint.slide), math.sin(joint.slide))
-        create = self.world.CreateWheelJoint if joint.turns_freely else self.world.CreatePrismaticJoint
-        create(bodyA=a, bodyB=b, anchor=joint.at, axis=axis)
+        if joint.turns_freely:
+            self.world.CreateWheelJoint(bodyA=a, bodyB=b, anchor=joint.at, axis=axis, frequencyHz=_LOOSE)
+        else:
+            self.world.CreatePrismaticJoint(bodyA=a, bodyB=b, anchor=joint.at, axis=axis)
 
     def place(self, body: int) -> tuple[float, float, float]:
         x, y = self.bodies[body].position
@@ -62,7 +68,7 @@ class _Box2DRig:
         self.pusher = self.world.CreateKinematicBody(position=at)
         # A wheel's axle slides along its axis without a spring, and turns: only the way across the axis is held.
         self.tie = self.world.CreateWheelJoint(
-            bodyA=self.pusher, bodyB=node, anchor=at, axis=(-dy, dx), frequencyHz=0.0, maxMotorTorque=0.0
+            bodyA=self.pusher, bodyB=node, anchor=at, axis=(-dy, dx), frequencyHz=_LOOSE, maxMotorTorque=0.0
         )
         self.origin, self.travel = (at[0], at[1]), 0.0
 

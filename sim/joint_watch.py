@@ -32,25 +32,23 @@ class JointWatch:
         self._state = np.zeros((0, 5))
         self._row: dict[DuctileJoint, int] = {}
         self._rows: dict[Structure, np.ndarray] = {}
-        self._present: list[int] = []
+        self._constraints: list[pymunk.Constraint] = []
+        self._present: list[DuctileJoint] = []
         self._spent = Energy()
 
     def note(self) -> None:
         """Take note of a step."""
-        present = [constraint for constraint in self._space.constraints if isinstance(constraint, DuctileJoint)]
-        for joint in present:
-            if joint not in self._row:
-                self._row[joint] = len(self.joints)
-                self.joints.append(joint)
-        new = len(self.joints) - len(self.peak)
-        self.peak, self._state = (np.pad(array, ((0, new), (0, 0))) for array in (self.peak, self._state))
+        constraints, gone = list(self._space.constraints), self._present
+        if constraints != self._constraints:
+            self._constraints = constraints
+            self._present = [constraint for constraint in constraints if isinstance(constraint, DuctileJoint)]
+            self._meet()
+        current = {joint.structure for joint in self._present}
         # Also of joints that have just gone: one may have been made and broken within this step.
-        before = [self.joints[row] for row in self._present]
-        self._present = [self._row[joint] for joint in present]
-        for structure in {joint.structure for joint in (*before, *present)}:
-            if structure is not None:
-                self._rows.setdefault(structure, np.array([self._row[joint] for joint in structure.joints]))
-        current = {joint.structure for joint in present}
+        before = current if gone is self._present else {joint.structure for joint in gone}
+        for structure in before | current:
+            if structure is not None and structure not in self._rows:
+                self._rows[structure] = np.array([self._row[joint] for joint in structure.joints])
         # A structure that is no more is read a last time, for the step in which it broke; what has passed on to
         # another is then read from that.
         for past in [structure for structure in self._rows if structure not in current]:
@@ -60,11 +58,20 @@ class JointWatch:
         for structure in self._rows:
             self._read(structure)
 
+    def _meet(self) -> None:
+        """Give joints that are new a row."""
+        for joint in self._present:
+            if joint not in self._row:
+                self._row[joint] = len(self.joints)
+                self.joints.append(joint)
+        new = len(self.joints) - len(self.peak)
+        self.peak, self._state = (np.pad(array, ((0, new), (0, 0))) for array in (self.peak, self._state))
+
     def state(self) -> np.ndarray:
         """What each joint bears, (n, 5); no force in one that was taken out of the space."""
         state = self._state.copy()
         gone = np.ones(len(state), dtype=bool)
-        gone[self._present] = False
+        gone[[self._row[joint] for joint in self._present]] = False
         state[gone, FORCE] = 0.0
         return state
 
@@ -75,7 +82,9 @@ class JointWatch:
     def _read(self, structure: Structure) -> None:
         rows, force, used = self._rows[structure], structure.force, structure.capacity_used
         self.peak[rows] = np.maximum(self.peak[rows], np.abs(force))
-        self._state[rows] = np.column_stack([force, used, (used >= 1.0) & ~structure.active])
+        self._state[rows, FORCE] = force
+        self._state[rows, USED] = used
+        self._state[rows, BROKEN] = (used >= 1.0) & ~structure.active
 
 
 def _without_what_passes_on(energy: Energy) -> Energy:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 import pymunk
+from pymunk import batch
 
 from sim import chipmunk
 from sim.energy import Energy
@@ -18,7 +19,10 @@ from sim.recorded import BodyKind, Contacts, Outline, RecordedBody, RecordedJoin
 
 __all__ = ["Recorder", "Recording"]
 
-# x, y, angle and velocity in a body's memory.
+# What is asked of all bodies of a space, and of all pairs of them that are in touch.
+_FIELDS = batch.BodyFields.BODY_ID | batch.BodyFields.POSITION | batch.BodyFields.ANGLE | batch.BodyFields.VELOCITY
+_BODIES = batch.ArbiterFields.BODY_A_ID | batch.ArbiterFields.BODY_B_ID
+# x, y, angle and velocity in a body's memory, in the same order.
 _MOTION = [chipmunk.ORIGIN, chipmunk.ORIGIN + 1, chipmunk.ANGLE, chipmunk.VX, chipmunk.VY]
 # Share of a step by which a time may be missed and still count as reached.
 _ROUNDING = 1e-6
@@ -41,16 +45,19 @@ class _Sample:
 
 
 class _Seen:
-    """A body: its shapes when it was first seen, and its memory, for reading many bodies often.
+    """A body: its shapes when it was first seen, and its memory.
 
     Attributes
     ----------
     outlines : tuple of Outline
     fields : (words,) float
         Chipmunk's own.
+    row : int
+        Its place among the recorded bodies.
     """
 
-    def __init__(self, body: pymunk.Body) -> None:
+    def __init__(self, body: pymunk.Body, row: int) -> None:
+        self.row = row
         self.outlines = tuple(_outline(shape) for shape in body.shapes)
         location = chipmunk.body_address(body)
         self.fields = chipmunk.words(location, chipmunk.BODY_FULL_WORDS)
@@ -92,9 +99,17 @@ class Recorder:
         self._now = self._step = 0.0
         # In the order in which they were first seen.
         self._bodies: dict[pymunk.Body, _Seen] = {}
+        # Those in the space, by Chipmunk's numbers, and their rows.
+        self._known: dict[int, pymunk.Body] = {}
+        self._present, self._rows = np.zeros(0, dtype=np.uintp), np.zeros(0, dtype=int)
+        # Those in no space, and how many joints were asked for them.
+        self._supports: list[pymunk.Body] = []
+        self._held = 0
+        self._buffer = batch.Buffer()
         self._joints = JointWatch(space)
         self._samples: list[_Sample] = []
         self._joints.note()
+        self._meet()
         self._keep()
 
     def sample(self, elapsed: float | None = None) -> None:
@@ -154,27 +169,57 @@ class Recorder:
 
     def _keep(self) -> None:
         """Keep the present moment."""
-        space = self._space
-        # Supports that settle are in no space.
-        held = (joint.a for joint in self._joints.joints if joint.a.body_type == pymunk.Body.KINEMATIC)
-        present = dict.fromkeys((space.static_body, *space.bodies, *held))
-        for body in present:
-            if body not in self._bodies:
-                self._bodies[body] = _Seen(body)
-        there = [(body, seen) for body, seen in self._bodies.items() if body in present]
-        motion = np.full((len(self._bodies), 5), math.nan)
-        motion[[body in present for body in self._bodies]] = [seen.fields[_MOTION] for _, seen in there]
-        touched = [body for body, seen in there if body.body_type == pymunk.Body.DYNAMIC and seen.touches]
-        contacts = _touching(touched, space.current_time_step) if self._now > 0.0 else []
+        self._buffer.clear()
+        batch.get_space_bodies(self._space, _FIELDS, self._buffer)
+        present = np.frombuffer(self._buffer.int_buf(), dtype=np.uintp)
+        if not np.array_equal(present, self._present):
+            self._present = present.copy()
+            self._meet()
+        self._meet_supports()
+        motion = np.full((len(self._bodies), len(_MOTION)), math.nan)
+        motion[self._rows] = np.frombuffer(self._buffer.float_buf(), dtype=float).reshape(-1, len(_MOTION))
+        for body in (self._space.static_body, *self._supports):
+            motion[self._bodies[body].row] = self._bodies[body].fields[_MOTION]
         self._samples.append(
             _Sample(
                 time=self._now,
                 motion=motion,
                 state=self._joints.state(),
-                contacts=np.array(contacts, dtype=float).reshape(-1, 4),
+                contacts=self._contacts(),
                 energy=self._joints.ledger(),
             )
         )
+
+    def _meet(self) -> None:
+        """Find the rows of the bodies that are in the space now, in Chipmunk's order."""
+        # Chipmunk counts the static body in once something is fixed to it.
+        self._known = {body.id: body for body in (self._space.static_body, *self._space.bodies)}
+        for body in self._known.values():
+            if body not in self._bodies:
+                self._bodies[body] = _Seen(body, len(self._bodies))
+        self._rows = np.array([self._bodies[self._known[i]].row for i in self._present.tolist()], dtype=int)
+
+    def _meet_supports(self) -> None:
+        """Find the bodies that are in no space: supports that settle."""
+        for joint in self._joints.joints[self._held :]:
+            if joint.a.body_type == pymunk.Body.KINEMATIC and joint.a not in self._bodies:
+                self._bodies[joint.a] = _Seen(joint.a, len(self._bodies))
+                self._supports.append(joint.a)
+        self._held = len(self._joints.joints)
+
+    def _contacts(self) -> np.ndarray:
+        """Contacts as they are now, (n, 4): point x, y and force x, y."""
+        if self._now == 0.0:
+            return np.zeros((0, 4))
+        self._buffer.clear()
+        batch.get_space_arbiters(self._space, _BODIES, self._buffer)
+        # Of all arbiters, those that have just parted are among them, too.
+        near = dict.fromkeys(np.frombuffer(self._buffer.int_buf(), dtype=np.uintp).tolist())
+        touched = [body for i in near if (body := self._known.get(i)) is not None and self._bodies[body].touches]
+        touched = [body for body in touched if body.body_type == pymunk.Body.DYNAMIC]
+        touched.sort(key=lambda body: self._bodies[body].row)
+        contacts = _touching(touched, self._space.current_time_step)
+        return np.array(contacts, dtype=float).reshape(-1, 4)
 
     def _described(self, i: int, joint: DuctileJoint, index: Mapping[pymunk.Body, int]) -> RecordedJoint:
         geometry = joint.geometry

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+import shapely
 from cantilevers import cantilever
 from rich.console import Console
 
 from calibration.reference_shape import reference_path, shape_for_replay, way
 from capacity import InputError
-from scene import Scene, parse_scene
+from scene import Scene, builtin_text, load_scene, parse_scene
 
 LENGTH, DISTANCE = 2.0, 0.005
 
@@ -75,3 +76,29 @@ def test_a_scene_that_nothing_moves_has_none() -> None:
     messages = Console(record=True)
     assert shape_for_replay(still, None, messages, lambda share: None) is None
     assert "without the reference's shape" in messages.export_text()
+
+
+def test_a_stocky_member_is_shown_by_the_outline_of_its_continuum() -> None:
+    """Held along x at the left, its right end pushed down by the way so far."""
+    scene = load_scene("short-cantilever")
+    shape = shape_for_replay(scene, None, Console(), lambda share: None)
+    assert shape
+    assert shape.label == "reference (plane stress)"
+    (outline,) = shape.lines
+    assert shape.time is not None
+    first, last = outline[0], outline[-1]
+    np.testing.assert_allclose([first.min(axis=0), first.max(axis=0)], [[0.0, -0.05], [0.2, 0.05]], atol=1e-12)
+    assert shapely.Polygon(first).area == pytest.approx(0.2 * 0.1)
+    assert shapely.Polygon(last).is_valid
+    left, right = (np.abs(first[:, 0] - x) < 1e-9 for x in (0.0, 0.2))
+    moved = last - first
+    np.testing.assert_allclose(moved[left][:, 0], 0.0, atol=1e-12)
+    np.testing.assert_allclose(moved[right][:, 1], -shape.time[-1], rtol=1e-9)
+
+
+def test_ideal_hinges_are_called_so() -> None:
+    text = builtin_text("fixed-beam").replace("gravity =", 'yielding = "ideal-hinges"\ngravity =')
+    shape = shape_for_replay(parse_scene(text, "test"), None, Console(), lambda share: None)
+    assert shape
+    assert shape.label == "reference (ideal hinges)"
+    assert min(line[-1, :, 1].min() for line in shape.lines) == pytest.approx(-0.06, rel=1e-3)

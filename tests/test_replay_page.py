@@ -223,6 +223,19 @@ def test_keys(page: Any) -> None:
     assert not press(" ")[2]
 
 
+@pytest.mark.parametrize("lacking", ["window.DecompressionStream", "Array.prototype.findLastIndex"])
+def test_a_browser_that_is_too_old_says_so(page: Any, lacking: str) -> None:
+    """One plain message in place of the picture, and nothing in the console."""
+    script = page.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": f"delete {lacking}"})
+    try:
+        page.refresh()
+        wait_until(lambda: page.find_element("id", "message").text != "")
+        assert "Take one from 2023 or later" in page.find_element("id", "message").text
+        assert "fault" in page.find_element("id", "message").get_attribute("class")
+    finally:
+        page.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+
+
 def test_it_fits_a_phone(page: Any) -> None:
     page.execute_cdp_cmd(
         "Emulation.setDeviceMetricsOverride", {"width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": True}

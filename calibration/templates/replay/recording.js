@@ -3,7 +3,7 @@
 const ABSENT = -32768;
 
 async function unpack(text) {
-  if (!("DecompressionStream" in window)) {
+  if (!("DecompressionStream" in window && "findLastIndex" in Array.prototype)) {
     throw new Error("This browser cannot unpack the recording. Take one from 2023 or later: Chrome, Edge, Firefox or Safari.");
   }
   const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));

@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import math
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +21,8 @@ from sim.recorded import Outline, RecordedJoint, Recording
 #: Stands for a value that is not there.
 ABSENT = -32768
 _LARGEST = 32767
+# Share of a joint's capacity below which a force is rounding.
+_ROUNDING = 1e-9
 # A body that moves further between two samples than this many times what its speeds allow was put elsewhere.
 _JUMP = 3.0
 
@@ -80,7 +83,7 @@ def payload(recording: Recording, reference: ReferenceShape | None = None) -> di
     """What the page's script reads; JSON can say all of it."""
     times, packer = len(recording.time), Packer()
     packer.add("pose", recording.pose.reshape(times, -1))
-    packer.add("force", recording.force.reshape(times, -1), centred=True)
+    packer.add("force", _felt(recording.force, recording.joints).reshape(times, -1), centred=True)
     packer.add("used", recording.capacity_used, centred=True)
     contacts = recording.contacts
     packer.add("touching", np.diff(contacts.start).reshape(-1, 1))
@@ -97,7 +100,9 @@ def payload(recording: Recording, reference: ReferenceShape | None = None) -> di
         ],
         "joints": [
             _joint(joint, peak, broken)
-            for joint, peak, broken in zip(recording.joints, recording.peak, recording.broken.T, strict=True)
+            for joint, peak, broken in zip(
+                recording.joints, _felt(recording.peak, recording.joints), recording.broken.T, strict=True
+            )
         ],
         "jumps": _jumps(recording),
         "energy": list(recording.energy),
@@ -105,6 +110,14 @@ def payload(recording: Recording, reference: ReferenceShape | None = None) -> di
         "layout": packer.layout,
         "data": packer.text(),
     }
+
+
+def _felt(force: np.ndarray, joints: Sequence[RecordedJoint]) -> np.ndarray:
+    """``force`` (…, joints, 3), but 0 where it is rounding beside the joint's capacity: its curve would be of noise."""
+    maxima = np.array([joint.maxima for joint in joints]).reshape(-1, 3)
+    least = np.where(np.isfinite(maxima), _ROUNDING * maxima, 0.0)
+    felt: np.ndarray = np.where(np.abs(force) < least, 0.0, force)
+    return felt
 
 
 def _outline(outline: Outline) -> dict[str, Any]:

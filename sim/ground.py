@@ -23,6 +23,8 @@ Vector = tuple[float, float]
 # A block that would come out elsewhere is halved so many times at most, and no more than this counts as coming out [m].
 _MOST_HALVINGS = 40
 _TOUCH = 1e-9
+# Cosine of the sharpest bend upwards that blocks follow, 120°.
+_SHARP = -0.5
 
 
 def add_grounds(scene: Scene, space: pymunk.Space) -> None:
@@ -37,8 +39,8 @@ def add_grounds(scene: Scene, space: pymunk.Space) -> None:
 def blocks(ground: Ground) -> list[list[Vector]]:
     """Corners of the convex block under each stretch of a ground line [m].
 
-    Blocks of neighbouring stretches share the edge between them where the line bends down; none comes out of the ground
-    at another stretch, so a wall is no thicker than it is drawn.
+    Blocks of neighbouring stretches share the edge between them, but where the line bends up sharply; none comes out of
+    the ground at another stretch, so a wall is no thicker than it is drawn.
     """
     points = [(float(x), float(y)) for x, y in ground.points]
     if points[-1][0] < points[0][0]:
@@ -71,14 +73,14 @@ def _direction(a: Vector, b: Vector) -> Vector:
 def _edge_below(own: Vector, before: Vector, after: Vector) -> Vector:
     """From a point of the line along the edge of a block, to 1 m below the block's own stretch.
 
-    Where the line bends down it is as far below both stretches, n₁ and n₂ their normals: (n₁ + n₂) / (1 + n₁·n₂). Where
-    the line bends up blocks end at right angles; the gap between them is below the point itself.
+    It is as far below both stretches, n₁ and n₂ their normals: (n₁ + n₂) / (1 + n₁·n₂). Where the line bends up so
+    sharply that this would reach far, blocks end at right angles; the gap between them is below the point itself.
     """
     bend = before[0] * after[1] - before[1] * after[0]
-    if bend >= 0.0:
+    along = before[0] * after[0] + before[1] * after[1]
+    if bend >= 0.0 and along < _SHARP:
         return own[1], -own[0]
-    scale = 1.0 + before[0] * after[0] + before[1] * after[1]
-    return (before[1] + after[1]) / scale, -(before[0] + after[0]) / scale
+    return (before[1] + after[1]) / (1.0 + along), -(before[0] + after[0]) / (1.0 + along)
 
 
 def _block(a: Vector, b: Vector, edges: tuple[Vector, Vector], thickness: float) -> list[Vector]:

@@ -15,7 +15,8 @@ from sim.energy import Energy
 from sim.joint import DuctileJoint
 from sim.joint_watch import BROKEN, FORCE, USED, JointWatch
 from sim.kernels import layout as at
-from sim.recorded import BodyKind, Contacts, Outline, RecordedBody, RecordedJoint, Recording
+from sim.outlines import outlines_of
+from sim.recorded import BodyKind, Contacts, RecordedBody, RecordedJoint, Recording
 
 __all__ = ["Recorder", "Recording"]
 
@@ -58,7 +59,7 @@ class _Seen:
 
     def __init__(self, body: pymunk.Body, row: int) -> None:
         self.row = row
-        self.outlines = tuple(_outline(shape) for shape in body.shapes)
+        self.outlines = outlines_of(body)
         location = chipmunk.body_address(body)
         self.fields = chipmunk.words(location, chipmunk.BODY_FULL_WORDS)
         self._lists = chipmunk.words(location, chipmunk.BODY_FULL_WORDS, np.int64)
@@ -237,15 +238,6 @@ class Recorder:
             turn=geometry[at.TURN],
             maxima=(float(n), float(q), float(m)),
         )
-
-
-def _outline(shape: pymunk.Shape) -> Outline:
-    if isinstance(shape, pymunk.Circle):
-        return Outline("circle", np.array([shape.offset]), shape.radius)
-    if isinstance(shape, pymunk.Segment):
-        return Outline("segment", np.array([shape.a, shape.b]), shape.radius)
-    assert isinstance(shape, pymunk.Poly)
-    return Outline("polygon", np.array(shape.get_vertices()), shape.radius)
 
 
 def _touching(bodies: Iterable[pymunk.Body], step: float) -> list[tuple[float, float, float, float]]:

@@ -108,5 +108,22 @@ def test_a_minute_of_a_hundred_bodies_at_sixty_a_second_is_below_ten_megabytes()
     assert len(replay_page(recording)) < 10e6
 
 
+def test_forces_that_are_rounding_are_none() -> None:
+    """Less than 1e-9 of what the joint can bear; of one without a limit all are told."""
+    recording = falling_ball(0.1)
+    capacity = np.array(recording.joints[0].maxima)
+    force = recording.force.copy()
+    force[:, 0] = 1e-12 * capacity
+    peak = recording.peak.copy()
+    peak[0] = 1e-12 * capacity
+    small = Recording(**{**vars(recording), "force": force, "peak": peak})
+    packed = payload(small)
+    assert not unpacked(packed)["force"][:, :3].any()
+    assert packed["joints"][0]["peak"] == [0.0, 0.0, 0.0]
+    endless = RecordedJoint(**{**vars(recording.joints[0]), "maxima": (np.inf, np.inf, np.inf)})
+    told = unpacked(payload(Recording(**{**vars(small), "joints": (endless, *recording.joints[1:])})))
+    np.testing.assert_allclose(told["force"][:, :3], force[:, 0], rtol=1e-4)
+
+
 def with_pose(recording: Recording, pose: np.ndarray) -> Recording:
     return Recording(**{**vars(recording), "pose": pose})

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from scene import Ground, builtin_names, load_scene
 from sim.ground import blocks
+from sim.outlines import outlines_of
 from sim.world import World
 
 LINES = st.lists(st.tuples(st.floats(0.05, 4.0), st.floats(-3.0, 3.0)), min_size=2, max_size=8)
@@ -57,9 +58,9 @@ def test_a_pit_is_solid_all_round() -> None:
     """Down its left wall, along its floor and up again: what is outside of it is ground."""
     pit = ((-1.0, 2.0), (-1.0, 0.0), (1.0, 0.0), (1.0, 2.0))
     left, floor, right = (shapely.Polygon(corners).bounds for corners in blocks(Ground(pit, thickness=0.5)))
-    assert left == pytest.approx((-1.5, 0.0, -1.0, 2.0))
-    assert floor == pytest.approx((-1.0, -0.5, 1.0, 0.0))
-    assert right == pytest.approx((1.0, 0.0, 1.5, 2.0))
+    assert left == pytest.approx((-1.5, -0.5, -1.0, 2.0))
+    assert floor == pytest.approx((-1.5, -0.5, 1.5, 0.0))
+    assert right == pytest.approx((1.0, -0.5, 1.5, 2.0))
 
 
 def surface(points: np.ndarray, x: float, beside: float) -> float:
@@ -112,3 +113,17 @@ def test_a_fast_body_stops_on_ground_twice_as_thick_as_its_way_in_a_step(speed: 
     for _ in range(240):
         space.step(1.0 / 60.0)
     assert plate.position.y == pytest.approx(0.005, abs=0.01)
+
+
+def test_ground_is_recorded_without_its_seams() -> None:
+    """One outline around all blocks; those around a closed pit stay, for an outline has no holes."""
+    hill = ((-5.0, 0.0), (0.0, 1.0), (5.0, 0.0), (9.0, 0.0))
+    pit = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (0.0, 0.0))
+    for line, count in ((hill, 1), (pit, 4)):
+        space = pymunk.Space()
+        for corners in blocks(Ground(line)):
+            space.add(pymunk.Poly(space.static_body, corners))
+        found = [shapely.Polygon(outline.points) for outline in outlines_of(space.static_body)]
+        assert len(found) == count
+        area = sum(shapely.Polygon(corners).area for corners in blocks(Ground(line)))
+        assert sum(outline.area for outline in found) == pytest.approx(area, rel=1e-5)

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from calibration.fitting import Fit, LoadCase, fit
+    from calibration.motion_tuning import MotionCalibration, calibrate_motion
     from calibration.trials import Trial
     from calibration.tuning import Calibration, calibrate
 
-__all__ = ["Calibration", "Fit", "LoadCase", "Trial", "calibrate", "fit"]
+__all__ = ["Calibration", "Fit", "LoadCase", "MotionCalibration", "Trial", "calibrate", "calibrate_motion", "fit"]
 
 _ROOMS = {"Calibration": "tuning", "calibrate": "tuning", "Trial": "trials"}
+_ROOMS |= dict.fromkeys(("MotionCalibration", "calibrate_motion"), "motion_tuning")
 _ROOMS |= dict.fromkeys(("Fit", "LoadCase", "fit"), "fitting")
 
 

@@ -6,6 +6,7 @@ import io
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import StrMethodFormatter
 
@@ -71,19 +72,22 @@ def frontier(result: Calibration) -> Figure:
         best = result.best
         chosen = (1e3 * best.push.seconds_per_simulated_second, 100.0 * best.errors.path_max)
         axes.scatter([chosen[0]], [chosen[1]], s=120, facecolors="none", edgecolors=INK, linewidths=1.4, label="chosen")
-        axes.axhline(100.0 * result.target_error, color=INK, lw=1.0, ls=(0, (4, 2)))
-        axes.annotate(
-            "target", (1.0, 100.0 * result.target_error), xycoords=("axes fraction", "data"), ha="right", va="bottom"
-        )
-        axes.set_yscale("log")
-        axes.set_xscale("log")
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-            axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
-        axes.set_xlabel("computing time for a simulated second [ms]")
+        cost_axes(axes, result.target_error)
         axes.set_ylabel("path error [% of peak load]")
         axes.legend(loc="best", fontsize=9)
     return figure
+
+
+def cost_axes(axes: Axes, target_error: float) -> None:
+    """Logarithmic axes of computing time and an error in per cent, with the target's line."""
+    axes.axhline(100.0 * target_error, color=INK, lw=1.0, ls=(0, (4, 2)))
+    axes.annotate("target", (1.0, 100.0 * target_error), xycoords=("axes fraction", "data"), ha="right", va="bottom")
+    axes.set_yscale("log")
+    axes.set_xscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
+    axes.set_xlabel("computing time for a simulated second [ms]")
 
 
 def svg(figure: Figure) -> str:

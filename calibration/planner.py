@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from calibration.member_plans import MemberPlan
 from scene import Scene
-from sim import MemberModel, Model
+from sim import AVERAGE_ACCELERATION, MemberModel, Model
 
 _HINGES = (3, 5)
 _LOBATTO = tuple(
@@ -31,6 +31,10 @@ _EQUAL = ((9, 8), (17, 12), (33, 16))
 # Where more joints and fibres no longer help it may be the step: fine models again, stepped finer.
 _FINE_STEPPING = ((1.0 / 240.0, 2), (1.0 / 1000.0, 4))
 _FINE = ((10, 16), (17, 48))
+# In a motion: joints and fibres, those of hinges without fibres; steps a second; average acceleration, damped little.
+_MOTION_FIBRES = ((3, 4), (5, 4), (4, 8), (6, 12), (8, 12), (10, 16), (14, 16), (20, 24))
+_MOTION_RATES = (60, 120, 240, 480, 1000, 2000, 4000)
+_MOTION_SCHEME = (AVERAGE_ACCELERATION[0], 0.02)
 
 # Prices of `benchmarks/model_prices.py` in microseconds, rounded: of a step, of a joint in it, of each Newton step
 # after the first for every joint, and for every Newton step what a law adds, that of fibres per fibre.
@@ -90,6 +94,17 @@ def candidates_to_fit(scene: Scene) -> list[Model]:
     In a stocky member yielding spreads further than beam theory says, which few joints mimic that stand for long parts.
     """
     models = [Model("lobatto", joints, "fibre", fibres) for joints in (3, 4, 5, 7) for fibres in (8, 12, 16, 24)]
+    return sorted(models, key=lambda model: relative_cost(model, scene.members))
+
+
+def motion_candidates(scene: Scene, *, yields: bool) -> list[Model]:
+    """Models in order of `relative_cost` for a motion, in which the step decides as much as joints and fibres do."""
+    joints = _MOTION_FIBRES if yields else ((3, 4), (4, 4), (5, 4), (6, 4), (8, 4), (10, 4), (14, 4))
+    models = [
+        Model("lobatto", n, "fibre" if fibres > 4 else "elastic-plastic", fibres, 1.0 / rate, scheme=_MOTION_SCHEME)
+        for n, fibres in joints
+        for rate in _MOTION_RATES
+    ]
     return sorted(models, key=lambda model: relative_cost(model, scene.members))
 
 

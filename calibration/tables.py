@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from calibration import figures
 from calibration.export import joint_table
 from calibration.fitting import Fit
 from calibration.sheets import Picture, Report, Sheet, percent
 from calibration.tuning import Calibration
+from capacity import Capacity
 from capacity.units import engineering
 from fem_reference import Pushover
+from scene import Scene
 from sim import MemberModel, Model
 
 
@@ -56,12 +58,12 @@ def verdict(result: Calibration) -> tuple[str, str]:
 
 def sheets(result: Calibration) -> list[Sheet]:
     """All tables of the report, in its order."""
-    tables = [_capacities(result), _members(result), _errors(result)]
+    tables = [capacity_sheet(result.scene, result.capacity), _members(result), _errors(result)]
     if result.fit is not None:
-        tables.append(_fit(result.fit))
+        tables.append(fit_sheet(result.fit))
     if result.findings.hinges:
         tables.append(_hinges(result))
-    return [*tables, _joints(result), _trials(result)]
+    return [*tables, joint_sheet(result.fitted_scene, result.best.model), _trials(result)]
 
 
 def in_words(model: Model, members: Iterable[str]) -> str:
@@ -81,17 +83,18 @@ def stepping(model: Model) -> str:
     return f"dt = 1/{1.0 / model.dt:.0f} s, {model.iterations} iterations"
 
 
-def _capacities(result: Calibration) -> Sheet:
+def capacity_sheet(scene: Scene, capacities: Mapping[str, Capacity]) -> Sheet:
+    """Capacities and stiffnesses of all members."""
     units = {"N_max": "N", "Q_max": "N", "M_max": "N m", "M_yield": "N m", "EA": "N", "GA_s": "N", "EI": "N m²"}
     rows = [
         (
             name,
-            result.scene.members[name].section.name,
+            scene.members[name].section.name,
             *(engineering(getattr(c, key), unit) for key, unit in units.items()),
         )
-        for name, c in result.capacity.items()
+        for name, c in capacities.items()
     ]
-    note = f"Yield criterion {result.scene.criterion}."
+    note = f"Yield criterion {scene.criterion}."
     heads = ("<member", "<section", *units)
     return Sheet("Capacities", note, heads, tuple(rows), wide=("M_yield", "EA", "GA_s"))
 
@@ -123,7 +126,7 @@ def _errors(result: Calibration) -> Sheet:
     return Sheet("Errors", note, ("<kind", "error"), tuple(rows))
 
 
-def _fit(found: Fit) -> Sheet:
+def fit_sheet(found: Fit) -> Sheet:
     rows: list[tuple[str, ...]] = []
     for name, value in found.parameters.items():
         low, high = found.bounds[name]
@@ -162,8 +165,9 @@ def _hinges(result: Calibration) -> Sheet:
     return Sheet("Hinges", note, ("<where", "reference", "model", "difference"), tuple(rows))
 
 
-def _joints(result: Calibration) -> Sheet:
-    table = joint_table(result.fitted_scene, result.best.model)
+def joint_sheet(scene: Scene, model: Model) -> Sheet:
+    """All joints that ``model`` gives ``scene``."""
+    table = joint_table(scene, model)
     rows = []
     for i, joint in enumerate(table["joints"], 1):
         stiffness = joint["elastic_stiffness"]

@@ -10,16 +10,16 @@ import msgspec
 from calibration.comparable_push import push_model
 from calibration.errors import Findings, compare, find
 from calibration.fitting import Fit, LoadCase, fit, fitted
+from calibration.frequencies import model_frequency, reference_frequency
 from calibration.limits import shear_remarks, what_limits
 from calibration.member_plans import MemberPlan, member_plans
 from calibration.planner import candidates, candidates_to_fit, cheaper, groups, relative_cost
 from calibration.trials import Failure, Trial
 from capacity import Capacity, InputError
-from fem_reference import NotConverged, PlanePush, PushAnswer, default_tolerance, natural_modes, push_over, remarks
+from fem_reference import NotConverged, PlanePush, PushAnswer, default_tolerance, push_over, remarks
 from scene import Scene
 from scene.quantities import Length
-from sim import Model, SolverError, assemble
-from sim import natural_modes as modes_of_joints
+from sim import Model, SolverError
 
 #: The reference must be this many times better than the target, …
 REFERENCE_MARGIN = 5.0
@@ -165,7 +165,7 @@ def calibrate(
         raise SolverError(f"none of {len(failures)} models could be stepped; the last said: {failures[-1].reason}")
     met = [trial for trial in trials if trial.errors.path_max <= target_error]
     best = min(met, key=lambda trial: trial.cost) if met else min(trials, key=lambda trial: trial.errors.path_max)
-    frequency = (0.0 if bench.fits else _reference_frequency(scene), _model_frequency(scene, best.model))
+    frequency = (0.0 if bench.fits else reference_frequency(scene), model_frequency(scene, best.model))
     if bench.fits:
         watch("reference of a load case that the fit did not see", 0.0)
         trials[trials.index(best)] = best = replace(best, fit=bench.fit(best.model, checks=[_unseen(scene)]))
@@ -260,16 +260,3 @@ def _unseen(scene: Scene) -> LoadCase:
         scene.push, distance=Length(0.0), turning_points=(Length(half), Length(-half)), unload=False
     )
     return LoadCase.solve("half as far and back", msgspec.structs.replace(scene, pushed=push))
-
-
-def _reference_frequency(scene: Scene) -> float:
-    """Lowest natural frequency of the reference [Hz]; 0 for a structure that is free to move."""
-    try:
-        return float(natural_modes(scene, 1).frequency[0])
-    except RuntimeError:  # SuperLU's: the stiffness is singular
-        return 0.0
-
-
-def _model_frequency(scene: Scene, model: Model) -> float:
-    """Lowest natural frequency of ``model`` [Hz]."""
-    return float(modes_of_joints(assemble(scene, model, shapes=False).joints)[0][0])

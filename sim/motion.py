@@ -45,7 +45,9 @@ class Course:
     steps : int
         Steps taken until the end of ``time``.
     seconds : float
-        Time that those steps took.
+        Processor time that those steps took.
+    newton_steps : float
+        Newton steps a step, on average.
     unconverged : int
         Solves that ended above the solver's tolerance.
     dissipated : float
@@ -62,6 +64,7 @@ class Course:
     joints: int
     steps: int
     seconds: float
+    newton_steps: float
     unconverged: int
     dissipated: float
 
@@ -93,11 +96,11 @@ def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda s
     steps = max(1, round(float(asked.duration) / model.dt))
     start = {name: np.array(node.now()) for name, node in assembly.nodes.items()}
     paths = {name: np.zeros((steps + 1, 2)) for name in assembly.nodes}
-    seconds = 0.0
+    seconds, newton_before = 0.0, assembly.structure.newton_steps
     for k in range(steps):
-        began = time.perf_counter()
+        began = time.thread_time()
         assembly.step(model.dt, sudden=True)
-        seconds += time.perf_counter() - began
+        seconds += time.thread_time() - began
         for name, point in assembly.nodes.items():
             paths[name][k + 1] = point.ahead(model.dt) - start[name]
         if k % 64 == 0:
@@ -105,6 +108,7 @@ def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda s
     along = {name: path @ unit_vector(asked.direction) for name, path in paths.items()}
     node = asked.watch or max(along, key=lambda name: float(np.ptp(along[name])))
     peak = int(np.argmax(np.abs(along[node])))
+    newton_steps = (assembly.structure.newton_steps - newton_before) / steps
     times, unconverged = model.dt * np.arange(steps + 1), assembly.structure.unconverged
     _come_to_rest(assembly, model.dt, _REST * abs(float(along[node][peak])))
     structure = assembly.structure
@@ -120,6 +124,7 @@ def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda s
         joints=len(assembly.places),
         steps=steps,
         seconds=seconds,
+        newton_steps=newton_steps,
         unconverged=unconverged,
         dissipated=float(structure.dissipated.sum()),
     )

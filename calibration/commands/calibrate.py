@@ -24,7 +24,8 @@ def calibrate(
     scene
         A TOML file, or the name of a built-in scene.
     target_error
-        Largest difference of load allowed on the path, as a share of the largest load ("1 %", "0.003").
+        Largest difference of load allowed on the path, as a share of the largest load ("1 %", "0.003"); in a motion, of
+        the peak and of where it comes to rest, as a share of the peak.
     output
         Folder for report.html, report.md, calibration.json, joints.json and the curves as CSV; out/SCENE by default.
     as_json
@@ -32,6 +33,7 @@ def calibrate(
     """
     from calibration.output import OutputFolder
     from calibration.progress import explained_compilation, progress_bar
+    from calibration.report import print_report
     from capacity.errors import InputError
     from scene import load_scene
 
@@ -43,29 +45,15 @@ def calibrate(
     messages = Console(stderr=True)
     with explained_compilation(messages):
         import sim  # noqa: F401
-    from calibration.export import calibration_object, curve_csv, joint_table
-    from calibration.page import report_page
-    from calibration.report import print_report, report_markdown
-    from calibration.tables import report
-    from calibration.tuning import calibrate as tune
+    from calibration.calibrate_command import answer
 
     with progress_bar(messages) as watch:
-        result = tune(loaded, target, scene, watch)
+        found = answer(loaded, target, scene, watch)
         watch("writing the report", 1.0)
-        whole, found = calibration_object(result), report(result)
-        folder.write(
-            {
-                "report.html": report_page(found),
-                "report.md": report_markdown(found),
-                "calibration.json": json.dumps(whole, indent=1),
-                "joints.json": json.dumps(joint_table(result.fitted_scene, result.best.model, scene), indent=1),
-                "reference.csv": curve_csv(result.reference.displacement, result.reference.load),
-                "model.csv": curve_csv(result.best.push.displacement, result.best.push.load),
-            }
-        )
+        folder.write(found.files())
     if as_json:
-        print(json.dumps(whole))
+        print(json.dumps(found.whole))
     else:
-        print_report(found, Console())
+        print_report(found.report, Console())
     folder.announce(messages)
-    return 0 if result.target_met else 1
+    return 0 if found.report.met else 1

@@ -1,0 +1,188 @@
+"""What the report of a calibration by a motion says, as tables, figures and data."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from calibration.export import settings
+from calibration.figures import INK, MODEL, REFERENCE, STYLE, cost_axes
+from calibration.motion_tuning import HISTORY_SHARE, REFERENCE_MARGIN, MotionCalibration, MotionTrial
+from calibration.sheets import Picture, Report, Sheet, percent
+from calibration.tables import capacity_sheet, in_words, joint_sheet, stepping
+from calibration.versions import versions
+from capacity.units import engineering
+
+
+def motion_report(result: MotionCalibration) -> Report:
+    """All of it: the verdict, tables and figures."""
+    reference, best = result.reference, result.best
+    off = max(abs(best.errors.peak), abs(best.errors.residual))
+    words = f"{best.course.bodies} rigid bodies with {best.course.joints} joints "
+    words += f"({in_words(best.model, result.scene.members)}) come to the reference's peak of "
+    words += f"{engineering(abs(reference.peak), 'm')} and its rest within {percent(off)} of the peak; "
+    words += f"{percent(result.target_error)} was asked. A simulated second takes "
+    words += f"{engineering(best.seconds_per_simulated_second, 's')} ({stepping(best.model)}): "
+    words += f"{1.0 / best.seconds_per_simulated_second:.0f} times faster than real time."
+    caption = (
+        f"Reference: {reference.method}; {reference.elements} elements a member, {reference.fibres} fibres a section, "
+        f"{reference.steps} steps. Its peak and rest are known within {percent(result.uncertainty, 2)} of the peak."
+    )
+    frontier = "Error of peak and rest against computing time of every model tried; the chosen one is ringed."
+    return Report(
+        kind="Calibration",
+        title=result.scene.title,
+        scene=result.name,
+        met=result.target_met,
+        verdict=("Target met" if result.target_met else "Target missed", words),
+        limit=result.limit,
+        remarks=result.remarks,
+        sheets=(
+            capacity_sheet(result.scene, result.capacity),
+            _errors(result),
+            joint_sheet(result.scene, best.model),
+            _trials(result),
+        ),
+        pictures=(
+            Picture("Motion", _history(result), caption),
+            Picture("", _frontier(result), frontier),
+        ),
+    )
+
+
+def _errors(result: MotionCalibration) -> Sheet:
+    errors = result.best.errors
+    signed = {
+        "peak": errors.peak,
+        "displacement at rest, of the peak": errors.residual,
+        "time of the peak, of the duration": errors.peak_time,
+        "plastic work": errors.plastic_work,
+        "first natural frequency": result.frequency_error,
+    }
+    rows = [
+        ("the reference, by its own estimate", percent(result.uncertainty)),
+        *((name, f"{100.0 * value:+.3f} %") for name, value in signed.items() if value is not None),
+        ("at any time, of the peak", percent(errors.history)),
+    ]
+    model = result.best.model
+    note = (
+        f"Of node {result.reference.node}. Model: {in_words(model, result.scene.members)}; {stepping(model)}, average "
+        f"acceleration with a numerical damping of {model.scheme[1]:g}. The target holds for the peak and the "
+        f"displacement at rest, and {1.0 / HISTORY_SHARE:.0f} times it at any time. The reference must be known "
+        f"{REFERENCE_MARGIN:.0f} times better."
+    )
+    return Sheet("Errors", note, ("<kind", "error"), tuple(rows))
+
+
+def _trials(result: MotionCalibration) -> Sheet:
+    rows = [
+        (
+            in_words(trial.model, result.scene.members),
+            f"{1 / trial.model.dt:.0f}",
+            str(trial.course.bodies),
+            f"{100.0 * trial.errors.peak:+.3g} %",
+            f"{100.0 * trial.errors.residual:+.3g} %",
+            percent(trial.errors.history),
+            f"{1e3 * trial.seconds_per_simulated_second:.3g}",
+        )
+        for trial in result.trials
+    ]
+    note = (
+        "All models tried, from cheap to dear, with milliseconds for a simulated second. Times are this machine's and "
+        "vary from run to run; errors do not."
+    )
+    if result.failures:
+        note += f" {len(result.failures)} more could not be stepped, the first: {result.failures[0].reason}."
+    heads = ("<model", "1/dt", "bodies", "peak", "rest", "at any time", "ms/s")
+    return Sheet("Speed against error", note, heads, tuple(rows), result.trials.index(result.best))
+
+
+def _history(result: MotionCalibration) -> Figure:
+    """Both displacements over time."""
+    reference, course = result.reference, result.best.course
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(7.2, 3.8), layout="constrained")
+        axes = figure.subplots()
+        axes.plot(reference.time, 1e3 * reference.displacement, color=REFERENCE, lw=2.5, label="reference (FEM)")
+        label = f"{course.bodies} rigid bodies, {course.joints} joints"
+        axes.plot(course.time, 1e3 * course.displacement, color=MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
+        axes.set_xlabel("time [s]")
+        axes.set_ylabel(f"displacement of {reference.node} [mm]")
+        axes.legend(loc="best")
+    return figure
+
+
+def _frontier(result: MotionCalibration) -> Figure:
+    """Error of every model tried against what a simulated second of it costs."""
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(7.2, 4.2), layout="constrained")
+        axes = figure.subplots()
+        for law, marker in (("elastic-plastic", "s"), ("fibre", "o")):
+            points = [_point(trial) for trial in result.trials if trial.model.law == law]
+            if points:
+                costs, errors = zip(*points, strict=True)
+                axes.scatter(costs, errors, s=26, marker=marker, label=law)
+        cost, error = _point(result.best)
+        axes.scatter([cost], [error], s=120, facecolors="none", edgecolors=INK, linewidths=1.4, label="chosen")
+        cost_axes(axes, result.target_error)
+        axes.set_ylabel("error of peak and rest [% of peak]")
+        axes.legend(loc="best", fontsize=9)
+    return figure
+
+
+def _point(trial: MotionTrial) -> tuple[float, float]:
+    return 1e3 * trial.seconds_per_simulated_second, 100.0 * trial.errors.worst
+
+
+def motion_object(result: MotionCalibration) -> dict[str, Any]:
+    """The calibration as one object for JSON; SI units."""
+    reference, best = result.reference, result.best
+    return {
+        "scene": result.name,
+        "title": result.scene.title,
+        "capacity": {name: capacity.values() for name, capacity in result.capacity.items()},
+        "reference": {
+            "method": reference.method,
+            "node": reference.node,
+            "time": reference.time.tolist(),
+            "displacement": reference.displacement.tolist(),
+            "peak": reference.peak,
+            "residual": {name: list(moved) for name, moved in reference.residual.items()},
+            "error_estimate": result.uncertainty,
+            "elements": reference.elements,
+            "fibres": reference.fibres,
+            "seconds": reference.seconds,
+        },
+        "model": {
+            **settings(best.model),
+            "bodies": best.course.bodies,
+            "joints": best.course.joints,
+            "displacement": best.course.displacement.tolist(),
+            "newton_steps": best.course.newton_steps,
+            "unconverged": best.course.unconverged,
+            "dissipated": best.course.dissipated,
+            "seconds": best.course.seconds,
+        },
+        "errors": {**asdict(best.errors), "frequency": result.frequency_error},
+        "speed": {"seconds_per_simulated_second": best.seconds_per_simulated_second},
+        "pareto": [
+            {
+                **settings(trial.model),
+                "bodies": trial.course.bodies,
+                "joints": trial.course.joints,
+                **asdict(trial.errors),
+                "cost": trial.cost,
+                "seconds_per_simulated_second": trial.seconds_per_simulated_second,
+            }
+            for trial in result.trials
+        ],
+        "failures": [{**settings(failure.model), "reason": failure.reason} for failure in result.failures],
+        "target_error": result.target_error,
+        "target_met": result.target_met,
+        "limit": result.limit,
+        "remarks": list(result.remarks),
+        "versions": versions(),
+    }

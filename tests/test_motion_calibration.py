@@ -65,7 +65,7 @@ def test_what_stays_bent_is_part_of_the_target(tmp_path: Path, capsys: pytest.Ca
 
 
 def test_scenes_without_push_or_motion_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    run = '[simulation]\nduration = 0.1'
+    run = "[simulation]\nduration = 0.1"
     (tmp_path / "scene.toml").write_text(sudden(0.3, 0.15).split("[motion]")[0] + run)
     assert ductile("calibrate", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "out")) == 2
     assert "add [push] or [motion]" in capsys.readouterr().err

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
@@ -44,6 +45,8 @@ def live(
     InputError
         When pygame is not installed, or there is no screen.
     """
+    # pygame greets on standard output, which may be for an answer in JSON.
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     try:
         import pygame
         import pymunk.pygame_util as drawing

@@ -90,9 +90,9 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     joint_damping : Duration
         Viscous damping of the members' joints over their stiffness [s]: a vibration at ω has the damping ratio
         ω joint_damping / 2.
-    law : str
-        Of a member's joints: ``"rigid-plastic"``, ``"elastic-plastic"``, ``"interaction"`` of N, Q and M, or
-        ``"fibre"`` section.
+    law : str, optional
+        Of the members' joints: ``"rigid-plastic"``, ``"elastic-plastic"``, ``"interaction"`` of N, Q and M, or
+        ``"fibre"`` section; by default the last for members that harden, and the second for others.
     fibres : int
         In a section, for the fibre law.
     hinge_length : Length, optional
@@ -115,7 +115,7 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rule: Literal["lobatto", "equal", "radau"] = "lobatto"
     joints: JointCount = 5
     joint_damping: Duration = si(0.0)
-    law: Literal["rigid-plastic", "elastic-plastic", "interaction", "fibre"] = "elastic-plastic"
+    law: Literal["rigid-plastic", "elastic-plastic", "interaction", "fibre"] | None = None
     fibres: Annotated[int, msgspec.Meta(ge=4, le=1000)] = 8
     hinge_length: Length | None = None
     refine_at: Annotated[float, msgspec.Meta(gt=0.0)] | None = None

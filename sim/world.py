@@ -8,21 +8,21 @@ from collections.abc import Collection, Iterable, Sequence
 import pymunk
 
 from capacity import InputError
-from scene import Member, Scene, Simulation, is_supported
+from scene import Scene, Simulation, is_supported
 from sim.contact_watch import ContactWatch, is_touching
 from sim.direct_joints import add_joints
 from sim.first_touch import first_touches, hold_back
 from sim.ground import add_grounds
-from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint
-from sim.limits import Limits
+from sim.joint import DuctileJoint
 from sim.load_programme import LoadProgramme
 from sim.loose_bodies import add_bodies
 from sim.measures import Watch
 from sim.members import Assembly, assemble
-from sim.model import MemberModel, Model
+from sim.model import Model
 from sim.motion import set_going
 from sim.overlaps import check_apart
 from sim.prescribed_push import PrescribedPush
+from sim.scene_model import limits_of, model_of, scheme_of
 from sim.settling import settle
 from sim.vehicles import Car, add_vehicles
 
@@ -92,7 +92,6 @@ class World:
         self.space = space = pymunk.Space()
         space.iterations = run.iterations if iterations is None else iterations
         space.collision_slop = run.collision_slop
-        scheme = _scheme(scene, run)
         self.time, self.steps = 0.0, 0
         self.part, self._parts_left, self._fewest_parts = self.dt, 0, 1
         self._largest_travel = run.largest_travel
@@ -100,22 +99,10 @@ class World:
         add_grounds(scene, space)
         self.bodies = add_bodies(scene, space)
         self.joints: dict[str, tuple[DuctileJoint, ...]] = {
-            name: (joint,) for name, joint in add_joints(scene, space, self.bodies, scheme).items()
+            name: (joint,) for name, joint in add_joints(scene, space, self.bodies, scheme_of(scene)).items()
         }
         self.cars: dict[str, Car] = add_vehicles(scene, space)
-        model = Model(
-            run.rule,
-            run.joints,
-            run.law,
-            fibres=run.fibres,
-            damping=run.joint_damping,
-            scheme=scheme,
-            hinge_length=run.hinge_length,
-            members=_models(scene, run),
-            refine_at=run.refine_at,
-            coarse_joints=run.coarse_joints,
-        )
-        self._assembly = self._add_members(model)
+        self._assembly = self._add_members(model_of(scene))
         self._loads = None if self._assembly is None else LoadProgramme(scene, self._assembly)
         check_apart(space, self._loose_places(), self._piece_places())
         self.push = self._start_push()
@@ -146,7 +133,7 @@ class World:
         scene = self.scene
         if not scene.members:
             return None
-        limits = {name: _limits(member) for name, member in scene.members.items()}
+        limits = {name: limits_of(member) for name, member in scene.members.items()}
         assembly = assemble(scene, model, self.space, limits=limits)
         for span in assembly.spans:
             for shape in span.body.shapes:
@@ -292,26 +279,3 @@ class World:
     def results(self) -> dict[str, float | list[float]]:
         """What the scene's measures ask for, by their names, up to now."""
         return {name: watch.result() for name, watch in self._watches.items()}
-
-
-def _scheme(scene: Scene, run: Simulation) -> tuple[float, float]:
-    """β and δ of the time integration."""
-    by_default = "average-acceleration" if scene.pushed is None else "implicit-euler"
-    if (run.integration or by_default) == "implicit-euler":
-        return IMPLICIT_EULER
-    return AVERAGE_ACCELERATION[0], run.numerical_damping
-
-
-def _models(scene: Scene, run: Simulation) -> dict[str, MemberModel]:
-    """Of the members that say how many joints they have."""
-    return {
-        name: MemberModel(run.rule, member.joints, run.law, run.fibres, run.hinge_length)
-        for name, member in scene.members.items()
-        if member.joints is not None
-    }
-
-
-def _limits(member: Member) -> Limits:
-    values = (member.break_elongation, member.break_slip, member.break_rotation)
-    elongation, slip, rotation = (math.inf if value is None else float(value) for value in values)
-    return Limits(elongation, slip, rotation)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from test_cli import ductile
 
-from scene import builtin_names
+from scene import builtin_names, builtin_text
 
 
 def test_the_answer_has_measures_joints_and_speed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -44,6 +44,21 @@ def test_a_person_gets_a_table_with_units(tmp_path: Path, capsys: pytest.Capture
     assert "foot at 0.0" in said
     assert "m/s" in said
     assert "× real time" in said
+
+
+@pytest.mark.parametrize(("law", "hardened"), [("", True), ('law = "fibre"', True), ('law = "elastic-plastic"', False)])
+def test_hardening_is_followed_or_said_to_be_left_out(
+    law: str, hardened: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With E_t = 5 GPa the tip takes a third more than M_p / L = 29.4 kN."""
+    text = builtin_text("cantilever").replace('rho=7850 kg/m^3"', 'rho=7850 kg/m^3, Et=5 GPa"')
+    file = tmp_path / "hard.toml"
+    file.write_text(f"{text}\n[simulation]\n{law}\n", encoding="utf-8")
+    options = ["--json", "--no-reference", "-o", str(tmp_path / "o")]
+    assert ductile("simulate", str(file), *options) == 0
+    out, error = capsys.readouterr()
+    assert json.loads(out)["push"]["load"] == pytest.approx(39.5e3 if hardened else 29.4e3, rel=0.01)
+    assert ("leaves hardening out" in error) is not hardened
 
 
 def test_schema_names_every_table(capsys: pytest.CaptureFixture[str]) -> None:

@@ -72,11 +72,14 @@ def simulate(
     from calibration.reference_shape import shape_for_replay
     from calibration.run_pictures import Camera, pictures
     from calibration.simulate_command import JointTable, as_object, print_answer, run, run_in_window
+    from sim.scene_model import left_out
     from sim.world import World
 
     if mp4:
         ffmpeg()
     world = World(loaded, step, iterations, length)
+    for remark in left_out(loaded):
+        messages.print(f"Mind: {remark}.", soft_wrap=True, markup=False)
     table, camera = JointTable(world, max(world.dt, world.duration / 1000.0)), Camera(world)
 
     def after_step() -> None:

@@ -135,7 +135,7 @@ def member_results(scene: Scene, frame: Frame, path: Trace) -> dict[str, MemberR
         nodes = np.vstack([frame.dofs[part, 0:2], frame.dofs[part.stop - 1, 3:5]])
         along = MemberPath(
             axial_force=stress[:, part, :, 0].reshape(len(stress), -1)[:, order],
-            shear_force=stress[:, part, :, 2].reshape(len(stress), -1)[:, order],
+            shear_force=_shear_force(stress[:, part, :, 1], mesh.stations)[:, order],
             moment=stress[:, part, :, 1].reshape(len(stress), -1)[:, order],
             curvature=strain[:, part, :, 1].reshape(len(strain), -1)[:, order],
             plastic_strain=plastic_strain[:, part].reshape(len(strain), -1)[:, order],
@@ -153,3 +153,13 @@ def member_results(scene: Scene, frame: Frame, path: Trace) -> dict[str, MemberR
             path=along,
         )
     return results
+
+
+def _shear_force(moment: np.ndarray, stations: np.ndarray) -> np.ndarray:
+    """Q = -dM/dx in each element of a member (k, 2 m), from M (k, m, 2) at its stations (m, 2).
+
+    Exactly what balances the element's nodal forces, for two quadrature points stand for a linear M; a beam without
+    shear flexibility has no strain to take Q from.
+    """
+    slope = np.diff(moment, axis=2) / np.diff(stations, axis=1)
+    return np.repeat(-slope, 2, axis=2).reshape(len(moment), -1)

@@ -42,6 +42,10 @@ def test_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
     assert last.cells_dict["line"].shape[0] == found["elements"]
     assert last.point_data["displacement"][-1, 1] == pytest.approx(-found["displacement"][-1], rel=1e-6)
     assert last.point_data["moment"][0] == pytest.approx(found["members"]["beam"]["moment"][0], rel=1e-6)
+    # Of a beam without shear flexibility, too, whose shear strain is nothing.
+    at_root = found["members"]["beam"]["end_forces"][0][1]
+    assert abs(at_root) == pytest.approx(found["load"][-1], rel=1e-6)
+    assert last.point_data["shear_force"] == pytest.approx(at_root, rel=1e-4)
     rows = list(csv.DictReader((folder / "reference.csv").read_text(encoding="utf-8").splitlines()))
     assert [float(row["load"]) for row in rows] == found["load"]
 

@@ -12,6 +12,7 @@ from calibration.commands.calibrate import calibrate
 from calibration.commands.capacity import capacity
 from calibration.commands.compare import compare
 from calibration.commands.export import export
+from calibration.commands.fit import fit
 from calibration.commands.reference import reference
 from calibration.commands.scenes import scenes
 from calibration.commands.simulate import simulate
@@ -24,7 +25,7 @@ app = App(
     version_flags=["--version"],
     result_action="return_value",
 )
-for command in (capacity, scenes, reference, simulate, calibrate, compare, study, export):
+for command in (capacity, scenes, reference, simulate, calibrate, fit, compare, study, export):
     app.command(command)
 
 

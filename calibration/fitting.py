@@ -17,9 +17,9 @@ singular value below `WEAK` of the largest whose direction is mostly that parame
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -29,7 +29,8 @@ from calibration.comparable_push import push_model
 from capacity import InputError, Material, StressStrain
 from fem_reference import PushAnswer, motion, push_over
 from scene import Scene
-from sim import Model, follow
+from scene.quantities import Force, ForcePerLength, Length, Moment, Speed
+from sim import IMPLICIT_EULER, Model, follow
 
 Name = Literal["stiffness", "strength", "spread", "hardening", "hinge_length", "damping"]
 #: Start and bounds of each parameter.
@@ -84,15 +85,49 @@ class LoadCase:
         course = motion(scene)
         return cls(name, scene, course.time, course.displacement, weight)
 
+    @classmethod
+    def unseen(cls, scene: Scene) -> LoadCase:
+        """What a fit to ``scene`` has not seen: pushed half as far and back, or set going half as hard."""
+        struct = msgspec.structs.replace
+        if scene.pushed is not None:
+            half = 0.5 * max(map(abs, scene.push.stops()))
+            push = struct(scene.push, distance=Length(0.0), turning_points=(Length(half), Length(-half)), unload=False)
+            return cls.solve("half as far and back", struct(scene, pushed=push))
+        motion = scene.motion
+        assert motion is not None
+        halved = struct(
+            scene,
+            motion=struct(motion, velocity=_half(motion.velocity, Speed)),
+            nodes={name: struct(node, velocity=_half(node.velocity, Speed)) for name, node in scene.nodes.items()},
+            loads=tuple(
+                struct(
+                    load,
+                    force=_half(load.force, Force),
+                    moment=Moment(0.5 * load.moment),
+                    per_length=_half(load.per_length, ForcePerLength),
+                )
+                if load.kind == "step"
+                else load
+                for load in scene.loads
+            ),
+        )
+        return cls.solve("set going half as hard", halved)
+
     def residuals(self, model: Model, parameters: Mapping[Name, float]) -> np.ndarray:
         """Model less reference over the largest value of the reference, (k,) [-]."""
         scene, model = fitted(self.scene, model, parameters)
         if scene.motion is None:
-            found = push_model(scene, model, self.points).load_at_distances
+            # A push asks for states of rest, whatever scheme is meant for motions.
+            push = push_model(scene, replace(model, scheme=IMPLICIT_EULER), self.points)
+            found = push.load_at_distances
         else:
             course = follow(scene, model)
             found = np.interp(self.points, course.time, course.displacement)
         return np.asarray((found - self.values) / np.abs(self.values).max())
+
+
+def _half(pair: tuple[float, float], kind: Callable[[float], Any]) -> tuple[Any, Any]:
+    return kind(0.5 * pair[0]), kind(0.5 * pair[1])
 
 
 @dataclass(frozen=True)
@@ -162,8 +197,7 @@ def fit(
     """
     if not cases or not names:
         raise ValueError("a fit needs a load case and a parameter")
-    if "hinge_length" in names and model.rule != "radau":
-        raise InputError("hinge_length", f'the rule "{model.rule}" has none', 'take the rule "radau"')
+    check_parameters(names, model)
     start, low, high = (np.array([bounds[name][i] for name in names]) for i in range(3))
     span = high - low
     weights = np.concatenate([np.full(len(case.points), (case.weight / len(case.points)) ** 0.5) for case in cases])
@@ -195,6 +229,12 @@ def fit(
         after={case.name: largest(case, values) for case in cases},
         checks={case.name: (largest(case, {}), largest(case, values)) for case in checks},
     )
+
+
+def check_parameters(names: Sequence[Name], model: Model) -> None:
+    """Raise InputError for a parameter that ``model`` does not have."""
+    if "hinge_length" in names and model.rule != "radau":
+        raise InputError("hinge_length", f'the rule "{model.rule}" has none', 'take the rule "radau"')
 
 
 def fitted(scene: Scene, model: Model, parameters: Mapping[Name, float]) -> tuple[Scene, Model]:

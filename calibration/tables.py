@@ -60,7 +60,7 @@ def sheets(result: Calibration) -> list[Sheet]:
     """All tables of the report, in its order."""
     tables = [capacity_sheet(result.scene, result.capacity), _members(result), _errors(result)]
     if result.fit is not None:
-        tables.append(fit_sheet(result.fit))
+        tables.extend(fit_sheets(result.fit))
     if result.findings.hinges:
         tables.append(_hinges(result))
     return [*tables, joint_sheet(result.fitted_scene, result.best.model), _trials(result)]
@@ -126,7 +126,8 @@ def _errors(result: Calibration) -> Sheet:
     return Sheet("Errors", note, ("<kind", "error"), tuple(rows))
 
 
-def fit_sheet(found: Fit) -> Sheet:
+def fit_sheets(found: Fit) -> tuple[Sheet, Sheet]:
+    """Fitted parameters, and what they do for each load case."""
     rows: list[tuple[str, ...]] = []
     for name, value in found.parameters.items():
         low, high = found.bounds[name]
@@ -134,14 +135,23 @@ def fit_sheet(found: Fit) -> Sheet:
             name in found.undetermined
         )
         rows.append((name, f"{value:.4g}", f"{low:g} to {high:g}", ", ".join(remarks) or "–"))
-    for case, after in found.after.items():
-        rows.append((f"error: {case}", percent(after), "–", f"{percent(found.before[case])} before the fit"))
-    for case, (before, after) in found.checks.items():
-        rows.append((f"error: {case}", percent(after), "–", f"not seen by the fit; {percent(before)} without it"))
     note = (
-        "Factors of what the scene says of E and fy; spread s: half of each fibre yields at 1 - s, half at 1 + s of it."
+        "Stiffness and strength are factors of what the scene says of E and fy; spread s: half of each fibre yields at "
+        "1 - s, half at 1 + s of it; hardening is E_t / E, the hinge length in section depths, damping in s."
     )
-    return Sheet("Fit", note, ("<what", "value", "bounds", "<remark"), tuple(rows))
+    errors = [(case, percent(after), percent(found.before[case]), "fitted to") for case, after in found.after.items()]
+    errors += [
+        (case, percent(after), percent(before), "not seen by the fit") for case, (before, after) in found.checks.items()
+    ]
+    return (
+        Sheet("Fit", note, ("<what", "value", "bounds", "<remark"), tuple(rows)),
+        Sheet(
+            "Errors of the fit",
+            "Largest difference, as a share of the largest load or of the peak.",
+            ("<load case", "with the fit", "without", "<remark"),
+            tuple(errors),
+        ),
+    )
 
 
 def _hinges(result: Calibration) -> Sheet:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import msgspec
-
 from calibration.comparable_push import push_model
 from calibration.errors import Findings, compare, find
 from calibration.fitting import Fit, LoadCase, fit, fitted
@@ -18,7 +16,6 @@ from calibration.trials import Failure, Trial
 from capacity import Capacity, InputError
 from fem_reference import NotConverged, PlanePush, PushAnswer, default_tolerance, push_over, remarks
 from scene import Scene
-from scene.quantities import Length
 from sim import Model, SolverError
 
 #: The reference must be this many times better than the target, …
@@ -168,7 +165,7 @@ def calibrate(
     frequency = (0.0 if bench.fits else reference_frequency(scene), model_frequency(scene, best.model))
     if bench.fits:
         watch("reference of a load case that the fit did not see", 0.0)
-        trials[trials.index(best)] = best = replace(best, fit=bench.fit(best.model, checks=[_unseen(scene)]))
+        trials[trials.index(best)] = best = replace(best, fit=bench.fit(best.model, checks=[LoadCase.unseen(scene)]))
     return Calibration(
         name=name or scene.title,
         scene=scene,
@@ -251,12 +248,3 @@ def _save(
             if less is not None and less.errors.path_max <= target_error and less.cost < trial.cost:
                 trial = less
                 break
-
-
-def _unseen(scene: Scene) -> LoadCase:
-    """The scene pushed half as far, and back as far the other way."""
-    half = 0.5 * max(map(abs, scene.push.stops()))
-    push = msgspec.structs.replace(
-        scene.push, distance=Length(0.0), turning_points=(Length(half), Length(-half)), unload=False
-    )
-    return LoadCase.solve("half as far and back", msgspec.structs.replace(scene, pushed=push))

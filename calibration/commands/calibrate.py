@@ -6,11 +6,11 @@ import json
 
 from rich.console import Console
 
-from calibration.commands.options import Folder, Json, share
+from calibration.commands.options import Folder, Json, SceneName, share
 
 
 def calibrate(
-    scene: str,
+    scene: SceneName,
     /,
     *,
     target_error: str = "1 %",
@@ -19,17 +19,13 @@ def calibrate(
 ) -> int:
     """Find the cheapest rigid-body model that follows the elastic–plastic reference closely enough.
 
+    Writes report.html, report.md, calibration.json, joints.json and the curves as CSV.
+
     Parameters
     ----------
-    scene
-        A TOML file, or the name of a built-in scene.
     target_error
         Largest difference of load allowed on the path, as a share of the largest load ("1 %", "0.003"); in a motion, of
         the peak and of where it comes to rest, as a share of the peak.
-    output
-        Folder for report.html, report.md, calibration.json, joints.json and the curves as CSV; out/SCENE by default.
-    as_json
-        Print one JSON object, in SI units, in place of the report.
     """
     from calibration.output import OutputFolder
     from calibration.progress import explained_compilation, progress_bar

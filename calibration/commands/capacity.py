@@ -113,8 +113,6 @@ def capacity(
         For weights.
     plot
         Draw the N-M curve to this file (.svg, .png, .pdf).
-    as_json
-        Print one JSON object, in SI units.
     """
     from calibration import capacity_command
 

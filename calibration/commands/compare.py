@@ -23,8 +23,6 @@ def compare(before: Path, after: Path, /, *, tolerance: str = "0.1 %", as_json: 
         The calibration.json of two runs of `ductile calibrate`.
     tolerance
         By how much an error may grow, as a share of what it is a share of ("0.1 %").
-    as_json
-        Print one JSON object in place of the table.
     """
     from calibration.comparison import compare_calibrations, read_calibration
 

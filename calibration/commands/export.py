@@ -8,14 +8,14 @@ from pathlib import Path
 
 from rich.console import Console
 
-from calibration.commands.options import Folder, Json, share
+from calibration.commands.options import Folder, Json, SceneName, share
 from capacity.errors import InputError
 
 _ENGINES = ("pymunk", "box2d", "bullet", "mujoco", "rapier", "godot", "unity", "unreal", "json")
 
 
 def export(
-    scene: str,
+    scene: SceneName,
     /,
     *,
     engine: str,
@@ -31,8 +31,6 @@ def export(
 
     Parameters
     ----------
-    scene
-        A TOML file, or the name of a built-in scene.
     engine
         pymunk, box2d, bullet, mujoco, rapier, godot, unity, unreal or json.
     rule
@@ -45,10 +43,6 @@ def export(
         Of the engine's solver.
     damping_ratio
         Of the rotation of each joint ("0.2", "5 %").
-    output
-        Folder for the file; out/SCENE by default.
-    as_json
-        Print one JSON object: the file's name and text, and the errors.
     """
     from calibration.output import OutputFolder
     from calibration.progress import explained_compilation

@@ -1,4 +1,4 @@
-"""What several commands take, and how it is read."""
+"""What several commands take, said once, and how it is read."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from cyclopts import Parameter
 
 from capacity.errors import InputError
 
-Json = Annotated[bool, Parameter(name="--json", negative=())]
-Folder = Annotated[Path | None, Parameter(name=["-o", "--output"])]
+SceneName = Annotated[str, Parameter(help="A TOML file, or the name of a built-in scene.")]
+Json = Annotated[
+    bool, Parameter(name="--json", negative=(), help="Print one JSON object, in SI units, in place of tables.")
+]
+Folder = Annotated[Path | None, Parameter(name=["-o", "--output"], help="Folder for the files; out/SCENE by default.")]
 
 
 def share(text: str, option: str) -> float:
@@ -20,4 +23,11 @@ def share(text: str, option: str) -> float:
     value = positive(text, "number", option)
     if value >= 1.0:
         raise InputError(option, f'"{text}" is not below 100 %', 'write a share such as "1 %"')
+    return value
+
+
+def at_least(value: int, least: int, option: str) -> int:
+    """``value``, unless it is less than ``least``."""
+    if value < least:
+        raise InputError(option, f"{value} is too few", f"write {least} or more")
     return value

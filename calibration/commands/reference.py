@@ -6,11 +6,11 @@ import json
 
 from rich.console import Console
 
-from calibration.commands.options import Folder, Json, share
+from calibration.commands.options import Folder, Json, SceneName, share
 
 
 def reference(
-    scene: str,
+    scene: SceneName,
     /,
     *,
     target_error: str | None = None,
@@ -20,18 +20,13 @@ def reference(
 ) -> int:
     """Follow a push or a motion with the elastic–plastic finite-element reference; each number with its error.
 
+    Writes the curve, hinges and sections as CSV, a plot as SVG, and fields as VTU.
+
     Parameters
     ----------
-    scene
-        A TOML file, or the name of a built-in scene.
     target_error
         Largest estimated error of the load, as a share of the largest load ("0.05 %", "0.001"); 0.05 % by default, in
         plane stress 0.2 %; of a motion, of the displacement, 1 %.
-    output
-        Folder for the curve, hinges and sections as CSV, a plot as SVG, and fields as VTU;
-        out/SCENE by default.
-    as_json
-        Print one JSON object, in SI units, in place of tables.
     cache
         Keep results on disk and use them again for the same content.
     """

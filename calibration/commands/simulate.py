@@ -8,12 +8,12 @@ from typing import Annotated
 from cyclopts import Parameter
 from rich.console import Console
 
-from calibration.commands.options import Folder, Json
+from calibration.commands.options import Folder, Json, SceneName
 from capacity.errors import InputError
 
 
 def simulate(
-    scene: str,
+    scene: SceneName,
     /,
     *,
     dt: str | None = None,
@@ -31,8 +31,6 @@ def simulate(
 
     Parameters
     ----------
-    scene
-        A TOML file, or the name of a built-in scene.
     dt
         Step, in place of the scene's ("1/240 s").
     iterations
@@ -49,10 +47,6 @@ def simulate(
         Show the run in a window while it goes on; needs the extra "live".
     reference
         Lay the finite-element reference's shape over the replay; for a push this is done unless told not to.
-    output
-        Folder for the files; out/SCENE by default.
-    as_json
-        Print one JSON object, in SI units, in place of the table.
     """
     from calibration.output import OutputFolder
     from calibration.progress import explained_compilation, progress_bar

@@ -8,14 +8,14 @@ from typing import Annotated
 from cyclopts import Parameter
 from rich.console import Console
 
-from calibration.commands.options import Folder, Json
+from calibration.commands.options import Folder, Json, SceneName
 from capacity.errors import InputError
 
 Wanted = Annotated[str | None, Parameter()]
 
 
 def study(
-    scene: str,
+    scene: SceneName,
     /,
     *,
     rules: Wanted = None,
@@ -31,10 +31,10 @@ def study(
 ) -> int:
     """Sweep rule, joints, law, step and iterations, and draw speed against error; stop and resume as you like.
 
+    Writes study.html, study.json, CSV and pictures, and the journal from which a study resumes.
+
     Parameters
     ----------
-    scene
-        A TOML file, or the name of a built-in scene.
     rules
         Where the joints of a member go, separated by commas ("lobatto, equal").
     joints
@@ -51,11 +51,6 @@ def study(
         Map which mass ratios and stiffnesses are borne at which step.
     executor
         Where to compute: "local" (all cores), "local:2", or "dask://HOST:PORT".
-    output
-        Folder for study.html, study.json, CSV and pictures, and the journal from which a study resumes; out/SCENE by
-        default.
-    as_json
-        Print one JSON object, in SI units, in place of the tables.
     """
     from concurrent.futures import CancelledError
     from functools import partial

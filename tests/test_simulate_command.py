@@ -2,12 +2,15 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
 from test_cli import ductile
 
-from scene import builtin_names, builtin_text
+from calibration.simulate_command import run
+from scene import builtin_names, builtin_text, load_scene
+from sim.world import World
 
 
 def test_the_answer_has_measures_joints_and_speed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -27,6 +30,18 @@ def test_the_answer_has_measures_joints_and_speed(tmp_path: Path, capsys: pytest
     assert {row["joint"] for row in rows} == {"hanger"}
     assert float(rows[-1]["N_N"]) == pytest.approx(60e3, rel=1e-6)
     assert float(rows[-1]["time_s"]) == pytest.approx(1.0)
+
+
+def test_a_run_tells_how_far_and_how_fast_it_is() -> None:
+    """What the progress bar shows: simulated time, the real-time factor, and the share done."""
+    told: list[tuple[str, float]] = []
+    world = World(load_scene("own-weight-beam"))
+    run(world, lambda: None, lambda what, share: told.append((what, share)))
+    shares = [share for _, share in told]
+    assert shares == sorted(shares)
+    assert 0.0 < shares[0] < 0.2
+    assert 0.9 < shares[-1] <= 1.0
+    assert all(re.fullmatch(r"\d+\.\d\d s simulated, [\d.e+]+ × real time", what) for what, _ in told)
 
 
 def test_options_replace_what_the_scene_says(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

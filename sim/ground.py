@@ -25,6 +25,8 @@ _MOST_HALVINGS = 40
 _TOUCH = 1e-9
 # Cosine of the sharpest bend upwards that blocks follow, 120°.
 _SHARP = -0.5
+# Sine of a bend that is none.
+_STRAIGHT = 1e-9
 
 
 def add_grounds(scene: Scene, space: pymunk.Space) -> None:
@@ -37,7 +39,7 @@ def add_grounds(scene: Scene, space: pymunk.Space) -> None:
 
 
 def blocks(ground: Ground) -> list[list[Vector]]:
-    """Corners of the convex block under each stretch of a ground line [m].
+    """Corners of the convex block under each straight stretch of a ground line [m].
 
     Blocks of neighbouring stretches share the edge between them, but where the line bends up sharply; none comes out of
     the ground at another stretch, so a wall is no thicker than it is drawn.
@@ -45,7 +47,7 @@ def blocks(ground: Ground) -> list[list[Vector]]:
     points = [(float(x), float(y)) for x, y in ground.points]
     if points[-1][0] < points[0][0]:
         points.reverse()
-    stretches = list(itertools.pairwise(points))
+    stretches = list(itertools.pairwise(_bends(points)))
     directions = [_direction(a, b) for a, b in stretches]
     closed = points[0] == points[-1]
     found = []
@@ -63,6 +65,16 @@ def blocks(ground: Ground) -> list[list[Vector]]:
             thickness *= 0.5
         found.append(corners)
     return found
+
+
+def _bends(points: list[Vector]) -> list[Vector]:
+    """``points`` without those in a straight part of the line: a corner that slides over a seam may catch there."""
+    kept = points[:1]
+    for point, following in itertools.pairwise(points[1:]):
+        (ax, ay), (bx, by) = _direction(kept[-1], point), _direction(point, following)
+        if abs(ax * by - ay * bx) > _STRAIGHT:
+            kept.append(point)
+    return [*kept, points[-1]]
 
 
 def _direction(a: Vector, b: Vector) -> Vector:

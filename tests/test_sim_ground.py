@@ -26,13 +26,22 @@ def below(points: list[tuple[float, float]]) -> shapely.Polygon:
     return shapely.Polygon([first, *points, last, (last[0], deep), (first[0], deep)])
 
 
+def bent(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
+    return abs((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])) > 1e-9 * math.dist(a, b) * math.dist(b, c)
+
+
 @given(LINES)
 def test_blocks_fill_the_ground_under_their_line_and_nothing_else(steps: list[tuple[float, float]]) -> None:
     """Down to the thickness, or to half of what there is: a point a hair under the line is in a block."""
     points = [(x, y) for x, (_, y) in zip(np.cumsum([dx for dx, _ in steps]).tolist(), steps, strict=True)]
     found = [shapely.Polygon(corners) for corners in blocks(Ground(tuple(points), thickness=1.0))]
     solid = below(points).buffer(1e-9)
-    for (a, b), block in zip(itertools.pairwise(points), found, strict=True):
+    bends = [
+        points[0],
+        *(b for a, b, c in zip(points, points[1:], points[2:], strict=False) if bent(a, b, c)),
+        points[-1],
+    ]
+    for (a, b), block in zip(itertools.pairwise(bends), found, strict=True):
         assert block.area > 0.0
         assert shapely.difference(block, solid).area < 1e-6
         assert shapely.distance(shapely.LineString([a, b]), block.boundary) < 1e-12
@@ -61,6 +70,22 @@ def test_a_pit_is_solid_all_round() -> None:
     assert left == pytest.approx((-1.5, -0.5, -1.0, 2.0))
     assert floor == pytest.approx((-1.5, -0.5, 1.5, 0.0))
     assert right == pytest.approx((1.0, -0.5, 1.5, 2.0))
+
+
+def test_a_box_slides_over_points_in_a_straight_line() -> None:
+    """Without friction it keeps its speed; blocks with a seam at each point would stop it."""
+    line = tuple((0.5 * k, 0.0) for k in range(-18, 41))
+    assert len(blocks(Ground(line))) == 1
+    space = pymunk.Space()
+    space.gravity, space.collision_slop = (0.0, -10.0), 1e-3
+    for corners in blocks(Ground(line)):
+        space.add(pymunk.Poly(space.static_body, corners))
+    box = pymunk.Body(10.0, 0.1)
+    box.position, box.velocity = (-4.0, 0.1), (3.0, 0.0)
+    space.add(box, pymunk.Poly.create_box(box, (0.4, 0.2)))
+    for _ in range(180):
+        space.step(1.0 / 60.0)
+    assert box.position.x == pytest.approx(5.0, abs=1e-3)
 
 
 def surface(points: np.ndarray, x: float, beside: float) -> float:

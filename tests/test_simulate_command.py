@@ -100,6 +100,7 @@ def test_scenes_are_listed_in_one_line_each(capsys: pytest.CaptureFixture[str]) 
         (["cantilever", "--dt", "5 kg"], "--dt"),
         (["cantilever", "--dt", "0 s"], "greater than zero"),
         (["cantilever", "--iterations", "0"], "--iterations"),
+        (["cantilever", "--iterations", "2.5"], "--iterations"),
         (["cantilever", "--duration", "2 s"], "a push ends at its last stop"),
     ],
 )

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from calibration.commands.options import Folder, Json, SceneName, share
+from calibration.commands.options import Folder, Json, SceneName, WholeNumber, share
 from capacity.errors import InputError
 
 _ENGINES = ("pymunk", "box2d", "bullet", "mujoco", "rapier", "godot", "unity", "unreal", "json")
@@ -20,9 +20,9 @@ def export(
     *,
     engine: str,
     rule: str = "lobatto",
-    joints: int | None = None,
+    joints: WholeNumber | None = None,
     dt: str = "1/60 s",
-    iterations: int = 30,
+    iterations: WholeNumber = 30,
     damping_ratio: str = "0.2",
     output: Folder = None,
     as_json: Json = False,

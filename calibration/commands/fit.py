@@ -9,7 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 from rich.console import Console
 
-from calibration.commands.options import Folder, Json, SceneName, at_least, share
+from calibration.commands.options import Folder, Json, SceneName, WholeNumber, at_least, share
 from capacity.errors import InputError
 
 
@@ -20,9 +20,9 @@ def fit(
     weights: str = "",
     check: Annotated[list[str] | None, Parameter(negative=())] = None,
     rule: str = "lobatto",
-    joints: int = 6,
+    joints: WholeNumber = 6,
     law: str = "fibre",
-    fibres: int = 12,
+    fibres: WholeNumber = 12,
     dt: str | None = None,
     target_error: str = "1 %",
     output: Folder = None,

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 
 from capacity.errors import InputError
 
+
+def _whole(kind: type, tokens: Sequence[Token]) -> int:  # noqa: ARG001
+    """A whole number from what stands on the command line; "2.5" is none, where it would be cut to 2."""
+    text = tokens[0].value
+    if not text.strip().removeprefix("-").isdecimal():
+        raise ValueError(f'"{text}" is no whole number')
+    return int(text)
+
+
+WholeNumber = Annotated[int, Parameter(converter=_whole)]
 SceneName = Annotated[str, Parameter(help="A TOML file, or the name of a built-in scene.")]
 Json = Annotated[
     bool, Parameter(name="--json", negative=(), help="Print one JSON object, in SI units, in place of tables.")

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 from rich.console import Console
 
-from calibration.commands.options import Folder, Json, SceneName
+from calibration.commands.options import Folder, Json, SceneName, WholeNumber
 from capacity.errors import InputError
 
 
@@ -17,7 +17,7 @@ def simulate(
     /,
     *,
     dt: str | None = None,
-    iterations: int | None = None,
+    iterations: WholeNumber | None = None,
     duration: str | None = None,
     csv: Annotated[bool, Parameter(name="--csv", negative=())] = False,
     gif: Annotated[bool, Parameter(name="--gif", negative=())] = False,

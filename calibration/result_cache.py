@@ -23,9 +23,9 @@ def content_key(scene: Scene, *settings: object, packages: Sequence[str] = REFER
     """A digest of ``scene``, ``settings`` and the ``packages`` that answer; whatever changes an answer changes it."""
     digest = hashlib.sha256(repr((scene, settings)).encode())
     for member in scene.members.values():
-        fibres = member.section.fibres(24)
-        digest.update(fibres.y.tobytes() + fibres.area.tobytes())
-        digest.update(repr(sorted(vars(member.material).items())).encode())
+        for material, fibres in member.section.fibres_by_material(24, member.material):
+            digest.update(fibres.y.tobytes() + fibres.area.tobytes())
+            digest.update(repr(sorted(vars(material).items())).encode())
     if scene.meshed is not None:
         digest.update(repr(scene.meshed.material and sorted(vars(scene.meshed.material).items())).encode())
         mesh = Path(scene.meshed.mesh or "")

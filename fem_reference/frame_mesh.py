@@ -69,27 +69,56 @@ def build_frame(scene: Scene, elements: int, fibres: int) -> Frame:
 
 
 def _sections(scene: Scene, elements: int, fibres: int) -> FibreSections:
-    """Fibres of every member; curves with fewer breaks than others get some at which nothing changes."""
-    if scene.yielding == "ideal-hinges":
-        pairs = [_ideal_hinge(scene, name) for name in scene.members]
-    else:
-        for name, member in scene.members.items():
-            if not member.material.stress_strain.unloads:
-                fault = "its stress–strain curve grows steeper somewhere, which says nothing about unloading"
-                raise InputError(f"members.{name}.material", fault, "use a curve whose slope only falls")
-        pairs = [(m.section.fibres(fibres), m.material.stress_strain) for m in scene.members.values()]
-    cut, laws = [fibre for fibre, _ in pairs], [law for _, law in pairs]
+    """Fibres of every member; sections with fewer fibres than others get some without area, curves with fewer breaks
+    some at which nothing changes.
+    """
+    cut = [
+        [_ideal_hinge(scene, name)] if scene.yielding == "ideal-hinges" else _pieces(scene, name, fibres)
+        for name in scene.members
+    ]
+    laws = [law for pieces in cut for _, law in pieces]
+    widest = max(sum(len(part.y) for part, _ in pieces) for pieces in cut)
+    y, area, material = np.zeros((len(cut), widest)), np.zeros((len(cut), widest)), np.zeros((len(cut), widest), int)
+    law = 0
+    for m, pieces in enumerate(cut):
+        first = 0
+        for part, _ in pieces:
+            here = slice(first, first := first + len(part.y))
+            y[m, here], area[m, here], material[m, here] = part.y, part.area, law
+            law += 1
     layers = max(len(law.breaks) for law in laws)
     return FibreSections(
         kind=np.repeat(np.arange(len(cut)), elements),
-        y=np.array([s.y for s in cut]),
-        area=np.array([s.area for s in cut]),
+        y=y,
+        area=area,
+        material=material,
         youngs_modulus=np.array([law.slopes[0] for law in laws]),
         last_slope=np.array([law.slopes[-1] for law in laws]),
         breaks=np.array([np.pad(law.breaks, (0, layers - len(law.breaks)), constant_values=np.inf) for law in laws]),
         drops=np.array([np.pad(law.drops, (0, layers - len(law.drops))) for law in laws]),
         shear_stiffness=np.repeat([scene.capacity(name).GA_s for name in scene.members], elements),
     )
+
+
+def _pieces(scene: Scene, name: str, fibres: int) -> list[tuple[Fibres, StressStrain]]:
+    """Fibres of each of a member's materials, and its law; the member's axis is the centroid weighted with E."""
+    member = scene.members[name]
+    section, material = member.section, member.material
+    if section.has_own_materials:
+        parts = section.fibres_by_material(fibres, material)
+    else:
+        parts = [(material, section.fibres(fibres))]
+    for own, _ in parts:
+        if not own.stress_strain.unloads:
+            fault = "its stress–strain curve grows steeper somewhere, which says nothing about unloading"
+            raise InputError(f"members.{name}.material", fault, "use a curve whose slope only falls")
+    if len(parts) == 1:
+        return [(part, own.stress_strain) for own, part in parts]
+    stiffness = [own.youngs_modulus * part.area for own, part in parts]
+    axis = (
+        sum(float(k @ part.y) for k, (_, part) in zip(stiffness, parts, strict=True)) / np.concatenate(stiffness).sum()
+    )
+    return [(Fibres(part.y - axis, part.area), own.stress_strain) for own, part in parts]
 
 
 def _ideal_hinge(scene: Scene, name: str) -> tuple[Fibres, StressStrain]:

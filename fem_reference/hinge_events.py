@@ -3,7 +3,9 @@
 A hinge is a section whose moment has reached M_pl,N, that of the wholly plastic section beside its axial force N. With
 the area below the neutral axis
 
-    A_t = (A + N / fy) / 2   in tension,   M_pl,N = 2 fy |∫ y dA|  over A_t.
+    A_t = (A + N / fy) / 2   in tension,   M_pl,N = 2 fy |∫ y dA|  over A_t,
+
+and of several materials likewise with the forces fy dA in place of areas.
 
 Without hardening a fibre section comes to it in the limit only. Near it 1 - M / M_pl,N goes with κ^-2, and the
 rotation, ∫ κ dx over the plastic zone, lacks a share in proportion to (1 - M / M_pl,N)^(1/2) of what it will be when
@@ -62,16 +64,17 @@ class HingeEvent:
     displacement_error: float | None = None
 
 
-def plastic_moment(y: np.ndarray, area: np.ndarray, yield_stress: float, N: np.ndarray, M: np.ndarray) -> np.ndarray:
+def plastic_moment(
+    y: np.ndarray, area: np.ndarray, yield_stress: float | np.ndarray, N: np.ndarray, M: np.ndarray
+) -> np.ndarray:
     """|M_pl,N| of fibres at ``y`` with ``area`` beside axial forces ``N``, for moments of the signs of ``M`` [N m]."""
     order = np.argsort(y)
-    below = np.append(0.0, np.cumsum(area[order]))
-    first = np.append(0.0, np.cumsum((area * y)[order]))
-    whole = below[-1]
-    tension = np.clip(0.5 * (whole + N / yield_stress), 0.0, whole)
-    return np.asarray(
-        2.0 * yield_stress * np.abs(np.interp(np.where(M >= 0.0, tension, whole - tension), below, first))
-    )
+    force = (area * yield_stress)[order]
+    below = np.append(0.0, np.cumsum(force))
+    first = np.append(0.0, np.cumsum(force * y[order]))
+    tension = np.clip(0.5 * (below[-1] + N), 0.0, below[-1])
+    lower = np.interp(np.where(M >= 0.0, tension, below[-1] - tension), below, first)
+    return np.asarray(np.abs(first[-1] - 2.0 * lower))
 
 
 def utilisation(frame: Frame, stress: np.ndarray) -> np.ndarray:
@@ -82,7 +85,8 @@ def utilisation(frame: Frame, stress: np.ndarray) -> np.ndarray:
         count = len(mesh.weights)
         sections, kind = frame.sections, frame.sections.kind[start]
         N, M = stress[:, start : start + count, :, 0], stress[:, start : start + count, :, 1]
-        fy = float(sections.youngs_modulus[kind] * sections.breaks[kind, 0])
+        of = sections.material[kind]
+        fy = sections.youngs_modulus[of] * sections.breaks[of, 0]
         full = plastic_moment(sections.y[kind], sections.area[kind], fy, N, M)
         shares.append(np.abs(M) / np.maximum(full, 1e-12 * full.max()))
         start += count

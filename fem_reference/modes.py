@@ -66,7 +66,7 @@ def masses(scene: Scene, frame: Frame) -> Masses:
             for i, a in zip(columns, values, strict=True):
                 for j, b in zip(columns, values, strict=True):
                     matrix[:, i, j] = np.sum(a * b * basis.dx, axis=1)
-        matrix *= member.material.density * member.section.area
+        matrix *= member.mass_per_length
         half = turned(matrix, c, s)
         parts.append(turned(np.swapaxes(half, 1, 2), c, s))
     nodal = np.zeros(frame.size)

@@ -26,7 +26,7 @@ TANGENT_FLOOR = 1e-7
 
 @dataclass(frozen=True)
 class FibreSections:
-    """Fibre sections of n elements, of m kinds with f fibres of l layers each.
+    """Fibre sections of n elements, of m kinds with f fibres each, of r materials with l layers each.
 
     Attributes
     ----------
@@ -34,11 +34,13 @@ class FibreSections:
         Which of the m sections an element has.
     y, area : (m, f) float
         Fibre heights [m] and areas [m²].
-    youngs_modulus : (m,) float
+    material : (m, f) int
+        Which of the r materials a fibre is of.
+    youngs_modulus : (r,) float
         E [Pa].
-    last_slope : (m,) float
+    last_slope : (r,) float
         Slope of the stress–strain curve beyond its last break [Pa].
-    breaks, drops : (m, l) float
+    breaks, drops : (r, l) float
         Strains ε_j at which the slope changes [-], and by how much it falls there [Pa].
     shear_stiffness : (n,) float
         GA_s [N].
@@ -47,6 +49,7 @@ class FibreSections:
     kind: np.ndarray
     y: np.ndarray
     area: np.ndarray
+    material: np.ndarray
     youngs_modulus: np.ndarray
     last_slope: np.ndarray
     breaks: np.ndarray
@@ -93,26 +96,25 @@ class FibreSections:
         force, matrix, axial_slope = np.zeros((n, k)), np.zeros((n, k, k)), np.zeros((n, k))
         after = np.empty_like(slip)
         _elements(
-            deformation, strain_matrix, weights, self.kind, self.y, self.area, self.youngs_modulus, self.last_slope,
-            self.breaks, self.drops, self.shear_stiffness, slip,
+            deformation, strain_matrix, weights, self.kind, self.y, self.area, self.material,
+            self.youngs_modulus, self.last_slope, self.breaks, self.drops, self.shear_stiffness, slip,
             strain, stress, stored, force, matrix, axial_slope, after,
         )  # fmt: skip
         return strain, stress, stored, force, matrix, axial_slope, after
 
     def plastic_strain(self, strain: np.ndarray, slip: np.ndarray) -> np.ndarray:
         """ε - σ / E of every fibre, (n, q, f), at strains (n, q, 3) with the slips (n, q, f, l) that belong to them."""
-        kind = self.kind
+        kind, of = self.kind, self.material[self.kind]
         fibre = strain[..., :1] - self.y[kind][:, None] * strain[..., 1:2]
-        layers = np.sum((fibre[..., None] - slip) * self.drops[kind][:, None, None], axis=-1)
-        e = self.youngs_modulus[kind][:, None, None]
-        stress = self.last_slope[kind][:, None, None] * fibre + layers
-        return np.asarray(fibre - stress / e)
+        layers = np.sum((fibre[..., None] - slip) * self.drops[of][:, None], axis=-1)
+        stress = self.last_slope[of][:, None] * fibre + layers
+        return np.asarray(fibre - stress / self.youngs_modulus[of][:, None])
 
 
 @njit(cache=True, error_model="numpy")
 def _elements(  # type: ignore[no-untyped-def]
-    deformation, strain_matrix, weights, kind, y, area, youngs_modulus, last_slope,
-    breaks, drops, shear_stiffness, slip,
+    deformation, strain_matrix, weights, kind, y, area, material,
+    youngs_modulus, last_slope, breaks, drops, shear_stiffness, slip,
     strain, stress, stored, force, matrix, axial_slope, after,
 ):  # fmt: skip
     n, points, _, size = strain_matrix.shape
@@ -120,8 +122,7 @@ def _elements(  # type: ignore[no-untyped-def]
     weighted = np.empty((3, size))
     for e in range(n):
         m = kind[e]
-        modulus, last, shear = youngs_modulus[m], last_slope[m], shear_stiffness[e]
-        floor = TANGENT_FLOOR * modulus
+        shear = shear_stiffness[e]
         for p in range(points):
             b, w = strain_matrix[e, p], weights[e, p]
             for row in range(3):
@@ -134,9 +135,11 @@ def _elements(  # type: ignore[no-untyped-def]
             for f in range(fibres):
                 height = y[m, f]
                 here = axial - height * curvature
+                r = material[m, f]
+                modulus, last = youngs_modulus[r], last_slope[r]
                 sigma, slope = last * here, last
                 for j in range(layers):
-                    elastic, most, share = here - slip[e, p, f, j], breaks[m, j], drops[m, j]
+                    elastic, most, share = here - slip[e, p, f, j], breaks[r, j], drops[r, j]
                     if elastic > most:
                         sigma += share * most
                         after[e, p, f, j] = here - most
@@ -147,16 +150,16 @@ def _elements(  # type: ignore[no-untyped-def]
                         sigma += share * elastic
                         slope += share
                         after[e, p, f, j] = slip[e, p, f, j]
-                pull, stiffness = area[m, f] * sigma, area[m, f] * max(slope, floor)
+                pull, stiffness = area[m, f] * sigma, area[m, f] * max(slope, TANGENT_FLOOR * modulus)
                 N += pull
                 M -= pull * height
-                energy += pull * sigma
+                energy += pull * sigma / modulus
                 ea += stiffness
                 es -= stiffness * height
                 ei += stiffness * height * height
             Q = shear * sliding
             stress[e, p, 0], stress[e, p, 1], stress[e, p, 2] = N, M, Q
-            stored[e, p] = 0.5 * (energy / modulus + Q * sliding)
+            stored[e, p] = 0.5 * (energy + Q * sliding)
             for i in range(size):
                 weighted[0, i] = w * (ea * b[0, i] + es * b[1, i])
                 weighted[1, i] = w * (es * b[0, i] + ei * b[1, i])

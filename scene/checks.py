@@ -77,9 +77,6 @@ def _check_members(scene: Scene) -> None:
             _check_known(scene, node, f"members.{name}.{key}")
         if scene.nodes[member.start].at == scene.nodes[member.end].at:
             raise InputError(f"members.{name}", "its two ends are at the same point", "move one of its nodes")
-        if member.section.has_own_materials:
-            cure = "use a section of one material; `ductile capacity` takes this one"
-            raise InputError(f"members.{name}.section", "members of several materials are not modelled yet", cure)
         if member.material.curve is not None and scene.yielding == "ideal-hinges":
             cure = 'give a yield stress such as "fy=235 MPa", or take yielding = "gradual"'
             raise InputError(f"members.{name}.material", "ideal hinges have no table of stresses", cure)

@@ -97,6 +97,11 @@ class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
     friction: Coefficient = 0.5
     joints: JointCount | None = None
 
+    @property
+    def mass_per_length(self) -> float:
+        """∫ ρ dA [kg/m]."""
+        return float(self.section.weighted(lambda m: m.density, self.material).moments()[0])
+
 
 class Member(Profile, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """A straight prismatic member from one node to another.
@@ -238,5 +243,4 @@ class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def weight_per_length(self, member: str) -> float:
         """Own weight of a member by name, downwards: ρ A g [N/m]."""
-        m = self.members[member]
-        return m.material.density * m.section.area * self.gravity
+        return self.members[member].mass_per_length * self.gravity

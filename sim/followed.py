@@ -10,8 +10,12 @@ def check_followed(scene: Scene) -> None:
     Raises
     ------
     InputError
-        When a push is led by its load.
+        When a push is led by its load, or a member is of several materials.
     """
+    for name, member in scene.members.items():
+        if member.section.has_own_materials:
+            cure = "use a section of one material; `ductile reference` follows this one"
+            raise InputError(f"members.{name}.section", "joints are of one material", cure)
     if scene.pushed is not None and scene.pushed.control != "displacement":
         cure = "leave it out; `ductile reference` follows load and arc-length control"
         raise InputError("push.control", f"joints are not pushed under {scene.pushed.control} control", cure)

@@ -17,8 +17,8 @@ SECTION = parse_section("rectangle 50x100 mm")
 def sections_of(y: np.ndarray, area: np.ndarray, law: StressStrain) -> FibreSections:
     """One section alone, as an "element" whose degrees of freedom are its strains."""
     return FibreSections(
-        np.zeros(1, int), y[None], area[None], law.slopes[:1], law.slopes[-1:], law.breaks[None], law.drops[None],
-        np.ones(1),
+        np.zeros(1, int), y[None], area[None], np.zeros((1, len(y)), int), law.slopes[:1], law.slopes[-1:],
+        law.breaks[None], law.drops[None], np.ones(1),
     )  # fmt: skip
 
 

@@ -75,6 +75,9 @@ def study(
     from calibration.study.sweep import sweep
     from calibration.tuning import REFERENCE_TOLERANCE
     from fem_reference import push_over
+    from sim.followed import check_followed
+
+    check_followed(loaded)
 
     journal = Journal(folder.path)
     points: list[Point] = [

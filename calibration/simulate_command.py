@@ -7,7 +7,6 @@ import io
 import math
 import time
 from collections.abc import Callable
-from dataclasses import asdict
 from typing import Any
 
 from rich.console import Console
@@ -15,8 +14,8 @@ from rich.table import Table
 
 from calibration.live_window import live
 from capacity.units import engineering
-from sim import energy
 from sim.measures import UNITS, rows
+from sim.recorded import Recording
 from sim.world import World
 
 _COLUMNS = (
@@ -94,7 +93,17 @@ def run_in_window(world: World, after_step: Callable[[], None]) -> float:
     return spent
 
 
-def as_object(world: World, name: str, seconds: float) -> dict[str, Any]:
+def energy_table(recording: Recording) -> str:
+    """The energy ledger over time, as CSV."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["time_s", *(f"{name}_J" for name in recording.energy)])
+    for row in zip(recording.time, *recording.energy.values(), strict=True):
+        writer.writerow([f"{number:.9g}" for number in row])
+    return text.getvalue()
+
+
+def as_object(world: World, name: str, seconds: float, recording: Recording) -> dict[str, Any]:
     """The answer as one object; SI. A figure that there is none of is null."""
     joints = list(world.labels)
     used = [float(value) for value in rows(joints, "capacity_used")]
@@ -119,7 +128,7 @@ def as_object(world: World, name: str, seconds: float) -> dict[str, Any]:
             "most_used": None if most is None else {"joint": world.labels[joints[most]], "capacity_used": used[most]},
             "plastic_work": float(sum(rows(joints, "dissipated"))),
         },
-        "energy": asdict(energy(world.space)),
+        "energy": {account: float(values[-1]) for account, values in recording.energy.items()},
         "unconverged": sum(structure.unconverged for structure in structures),
     }
     if world.push is not None:

@@ -18,6 +18,7 @@ from sim.pushover import Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
 from sim.rules import RULES, Rule, equal, lobatto, radau  # noqa: E402
 from sim.structure import SolverError, Structure  # noqa: E402
+from sim.system_ledger import SystemLedger  # noqa: E402
 
 __all__ = [
     "AVERAGE_ACCELERATION",
@@ -45,6 +46,7 @@ __all__ = [
     "Rule",
     "SolverError",
     "Structure",
+    "SystemLedger",
     "assemble",
     "energy",
     "equal",

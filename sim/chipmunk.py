@@ -40,7 +40,10 @@ ARBITER_FRICTION, ARBITER_SURFACE = 1, 2
 ARBITER_BODY_A, ARBITER_BODY_B = 7, 8
 ARBITER_NEXT_A, ARBITER_NEXT_B = 9, 11
 ARBITER_COUNT, ARBITER_CONTACTS, ARBITER_NORMAL = 13, 14, 15
-ARBITER_WORDS = 17
+# Its state is half of this word; `FIRST` where the shapes did not touch in the last step. Chipmunk does not apply the
+# impulses again then that the contacts may have kept from some steps ago.
+ARBITER_STATE, FIRST = 22, 0
+ARBITER_WORDS = 23
 
 # cpContact: one point of contact.
 CONTACT_R1, CONTACT_R2 = 0, 2
@@ -180,6 +183,8 @@ def verify() -> None:
     space.remove(joint)
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == 0
     fits &= bodies[CONSTRAINT_BODY_A] == body_address(body) and bodies[_BODY_B] == body_address(other)
+    fits &= _offsets("cpArbiter", e=0, n=ARBITER_NORMAL, state=ARBITER_STATE, contacts=ARBITER_CONTACTS)
+    fits &= _offsets("struct cpContact", r2=CONTACT_R2, jnAcc=CONTACT_NORMAL_IMPULSE, hash=CONTACT_HASH)
     for constraint in _one_of_each(body, other):
         cached_impulse(constraint)[:] = 47.0
         fits &= abs(constraint.impulse - math.hypot(*cached_impulse(constraint))) <= 1e-12
@@ -188,6 +193,12 @@ def verify() -> None:
             f"pymunk {pymunk.version} lays out its bodies or constraints in a way that sim does not know; "
             f"install version {KNOWN_VERSIONS}: pip install 'pymunk>=7.3,<7.4'"
         )
+
+
+def _offsets(struct: str, **words: int) -> bool:
+    """Whether the fields of a struct that pymunk itself describes begin at these words."""
+    fields = dict(ffi.typeof(struct).fields)
+    return all(fields[name].offset == 8 * word for name, word in words.items())
 
 
 def _one_of_each(a: pymunk.Body, b: pymunk.Body) -> list[pymunk.Constraint]:

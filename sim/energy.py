@@ -11,7 +11,8 @@ import pymunk
 class Energy:
     """The ledger of a structure [J]: ``external`` is the sum of all the others, to rounding.
 
-    How each is reckoned, and why, heads `sim.kernels.energy`. Ledgers of several structures add up with ``+``.
+    How each is reckoned, and why, heads `sim.kernels.energy`; all belong to the middle of the bodies' next move, where
+    their velocities belong. Ledgers of several structures add up with ``+``.
 
     Attributes
     ----------
@@ -23,13 +24,16 @@ class Energy:
     elastic : float
         Stored in its joints at present.
     plastic : float
-        Dissipated by its joints, with what was stored in them when they broke.
+        Dissipated by its joints, with what was stored in them when they broke; of the last move's, half.
     contact : float
-        Lost to friction and impact at its contacts; taking out overlap may give some of it back.
+        Lost to friction and impact at its contacts, less what taking out overlap gave back.
     viscous : float
         Dissipated by its joints' damping.
     numerical : float
         Dissipated by the time integration.
+    stock : float
+        Of a whole space (`sim.SystemLedger`): what Chipmunk's own constraints took from loose bodies; springs store it
+        and give it back, motors give.
     """
 
     external: float = 0.0
@@ -39,6 +43,7 @@ class Energy:
     contact: float = 0.0
     viscous: float = 0.0
     numerical: float = 0.0
+    stock: float = 0.0
 
     def __add__(self, other: Energy) -> Energy:
         return Energy(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
@@ -46,7 +51,7 @@ class Energy:
     @property
     def gap(self) -> float:
         """What the ledger fails to close by [J]."""
-        spent = self.kinetic + self.elastic + self.plastic + self.contact + self.viscous + self.numerical
+        spent = self.kinetic + self.elastic + self.plastic + self.contact + self.viscous + self.numerical + self.stock
         return self.external - spent
 
 

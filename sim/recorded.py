@@ -122,7 +122,7 @@ class Recording:
         Largest N, Q and M in any step, without sign, between the sampled times, too.
     contacts : Contacts
     energy : dict[str, (t,) float]
-        Ledger of all structures that there are or were, by account [J]; see `sim.energy.Energy`.
+        Ledger of all structures that there are or were and of loose bodies, by account [J]; see `sim.energy.Energy`.
     """
 
     title: str

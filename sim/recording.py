@@ -17,6 +17,7 @@ from sim.joint_watch import BROKEN, FORCE, USED, JointWatch
 from sim.kernels import layout as at
 from sim.outlines import outlines_of
 from sim.recorded import BodyKind, Contacts, RecordedBody, RecordedJoint, Recording
+from sim.system_ledger import SystemLedger
 
 __all__ = ["Recorder", "Recording"]
 
@@ -108,6 +109,7 @@ class Recorder:
         self._held = 0
         self._buffer = batch.Buffer()
         self._joints = JointWatch(space)
+        self._ledger = SystemLedger(space, self._joints)
         self._samples: list[_Sample] = []
         self._joints.note()
         self._meet()
@@ -126,6 +128,7 @@ class Recorder:
         self._now += step
         self._step = step
         self._joints.note()
+        self._ledger.note()
         if math.floor((self._now + _ROUNDING * step) / self._every) > periods_before:
             self._keep()
 
@@ -187,7 +190,7 @@ class Recorder:
                 motion=motion,
                 state=self._joints.state(),
                 contacts=self._contacts(),
-                energy=self._joints.ledger(),
+                energy=self._ledger.energy,
             )
         )
 

@@ -205,12 +205,12 @@ class Structure:
     @property
     def scheme(self) -> tuple[float, float]:
         """β and δ of the time integration; may be changed between steps."""
-        beta, delta = self._settings[[at.BETA, at.DELTA]].tolist()
+        beta, delta = self._settings[[at.WANTED_BETA, at.WANTED_DELTA]].tolist()
         return beta, delta
 
     @scheme.setter
     def scheme(self, scheme: tuple[float, float]) -> None:
-        self._settings[[at.BETA, at.DELTA]] = scheme
+        self._settings[[at.BETA, at.DELTA]] = self._settings[[at.WANTED_BETA, at.WANTED_DELTA]] = scheme
         for joint in self.joints:
             joint.scheme = scheme
 
@@ -321,7 +321,6 @@ class Structure:
             _raise_after_step(_space_of(joint), error)
             return
         if self._control[at.MISSED] > 0:
-            # Chipmunk solved these by itself in this step; in the next there is room for them.
             self.tables.make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
         if self._control[at.BROKE] == 0:
             return

@@ -48,7 +48,7 @@ class Tables:
         laws[:, 4] = np.diff(self._state_ends)
         limits = [(j.limits.elongation, j.limits.slip, j.limits.rotation, j.limits.compression_counts) for j in joints]
         settings = np.zeros(at.SETTINGS_WORDS)
-        settings[[at.BETA, at.DELTA]] = joints[0].scheme
+        settings[[at.BETA, at.DELTA]] = settings[[at.WANTED_BETA, at.WANTED_DELTA]] = joints[0].scheme
         settings[at.TOLERANCE] = tolerance**2
         keys, values = hash_table([chipmunk.body_address(body) for body in bodies])
         per_joint = (at.DEFORMATION, at.LIGHTNESS, at.IMPULSE, at.RESIDUAL, at.SLOPE)

@@ -38,7 +38,7 @@ def simulate(
     duration
         How long, in place of the scene's ("20 s").
     csv
-        Write all joints over time to joints.csv.
+        Write all joints over time to joints.csv, and the energy ledger to energy.csv.
     gif
         Write a film of the run to run.gif.
     mp4
@@ -65,7 +65,7 @@ def simulate(
     from calibration.moving_picture import ffmpeg
     from calibration.reference_shape import shape_for_replay
     from calibration.run_pictures import Camera, pictures
-    from calibration.simulate_command import JointTable, as_object, print_answer, run, run_in_window
+    from calibration.simulate_command import JointTable, as_object, energy_table, print_answer, run, run_in_window
     from sim.scene_model import left_out
     from sim.world import World
 
@@ -86,17 +86,19 @@ def simulate(
     else:
         with progress_bar(messages) as watch:
             seconds = run(world, after_step, watch)
-    answer = as_object(world, scene, seconds)
+    recording = camera.recording()
+    answer = as_object(world, scene, seconds, recording)
     files: dict[str, str | bytes] = {"simulation.json": json.dumps(answer, indent=1)}
     if csv:
         files["joints.csv"] = table.text()
+        files["energy.csv"] = energy_table(recording)
     with progress_bar(messages) as watch:
         wanted = loaded.pushed is not None if reference is None else reference
         shape = None
         if wanted:
             shape = shape_for_replay(loaded, camera.pushed, messages, lambda share: watch("reference", share))
         watch("drawing", 1.0)
-        files |= pictures(camera.recording(), shape, gif, mp4)
+        files |= pictures(recording, shape, gif, mp4)
     folder.write(files)
     if as_json:
         print(json.dumps(answer))

@@ -9,8 +9,10 @@
 | ``residual``, ``newton`` | impulses of the joints: Newton's method with a line search |
 | ``spread`` | a load pattern under displacement control |
 | ``contacts``, ``complement`` | contacts of the structures' bodies, solved through the structures |
+| ``restitution`` | no more bounce than there is energy for |
 | ``commit`` | the end of a step: plastic state, breaking, what the joints bore |
 | ``energy``, ``guard`` | the ledger, and no energy from nowhere |
+| ``loose`` | bodies without joints, for the ledger of a space |
 | ``step``, ``callbacks`` | one step of a structure, and the functions that Chipmunk calls |
 """
 

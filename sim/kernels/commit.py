@@ -163,6 +163,10 @@ def commit(t):  # type: ignore[no-untyped-def]
             external -= work_on_held(t, k, velocity, start)
         if t[at.SHIFTED] == 1:
             by_contacts, by_hand = work_of_shifts(t, k, 0), work_of_shifts(t, k, 3)
+            if by_contacts + by_hand < -r[RESULT_ELASTIC]:
+                # No more can be released than is stored.
+                less = -r[RESULT_ELASTIC] / (by_contacts + by_hand)
+                by_contacts, by_hand = less * by_contacts, less * by_hand
             contact -= by_contacts
             external += by_hand
             given += by_contacts + by_hand

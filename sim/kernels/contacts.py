@@ -23,6 +23,7 @@ from sim.chipmunk import (
     ARBITER_NEXT_A,
     ARBITER_NEXT_B,
     ARBITER_NORMAL,
+    ARBITER_STATE,
     ARBITER_SURFACE,
     ARBITER_WORDS,
     ARBITERS,
@@ -47,6 +48,7 @@ from sim.chipmunk import (
     CONTACT_TANGENT_MASS,
     CONTACT_WORDS,
     CONTROL,
+    FIRST,
     MASS_INVERSE,
     MOMENT_INVERSE,
     SPACE_SLOP,
@@ -181,6 +183,8 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 if touch[WANTED] == 0.0 and spare > 0.0:
                     touch[WANTED] = -_SETTLE * spare / h
                 touch[PUSH] = contact[CONTACT_BIAS]
+                if w[ARBITER_STATE] & 0xFFFFFFFF == FIRST:
+                    contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = 0.0, 0.0
                 touch[CACHED], touch[CACHED + 1] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE]
                 for row in range(2):
                     touch[OTHER_START + row] = other_velocity(c, p, touch, row)
@@ -208,6 +212,15 @@ def parting(arbiter, contact, h):  # type: ignore[no-untyped-def]
     ra = math.hypot(contact[CONTACT_R1], contact[CONTACT_R1 + 1])
     rb = math.hypot(contact[CONTACT_R2], contact[CONTACT_R2 + 1])
     return 0.5 * (ra * (a[SPIN] * h) ** 2 + rb * (b[SPIN] * h) ** 2)
+
+
+@njit(error_model="numpy")
+def hand_back(t):  # type: ignore[no-untyped-def]
+    """Undo what `collect` did to the contacts."""
+    places = views.places(t)
+    for k in range(t[at.CONTACTS]):
+        contact = floats(places[k, WHERE], CONTACT_WORDS)
+        contact[CONTACT_NORMAL_MASS], contact[CONTACT_TANGENT_MASS] = 1.0, 1.0
 
 
 @njit(error_model="numpy")

@@ -1,9 +1,10 @@
-"""No energy from nowhere: what closes the ledger's numerical dissipation from below in implicit Euler.
+"""No energy from nowhere: what closes the ledger's numerical dissipation from below.
 
 Directions of forces are those of a step's start, and a joint's force may turn round from one step to the next while the
 move between was made against the old one. The numerical dissipation shows what that creates: where bodies turn by an
 angle φ in a step under compression, a share of φ² of the energy, and where a yielding joint is thrown back, up to the
-plastic work of its last move. Three things keep it from being negative, one after the other:
+plastic work of its last move. Taking out overlap may give energy, too; what contacts give beyond what they took is
+booked with it. Three things keep it from being negative in implicit Euler, one after the other:
 
 - a contact's impulse that also balances joints within the step has lost no more in an impact than there was;
 - what the step has created is taken out of the motion of the bodies relative to each other again: velocities go towards
@@ -11,6 +12,11 @@ plastic work of its last move. Three things keep it from being negative, one aft
   structure as they are;
 - where there is too little motion for that, as after a step that did not converge, plastic work is not booked until
   dissipation has caught up with it.
+
+The average-acceleration rule neither dissipates nor creates where the step resolves the motion, and its numerical entry
+goes up and down a little. Pieces that turn by a radian in a step make it create ever more energy. So where any turns by
+more than a quarter of that, steps are taken by implicit Euler, and also once a tenth of the ledger's largest entry has
+been created, until that is gone.
 """
 
 import math
@@ -21,35 +27,64 @@ from sim.kernels import views
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import (
     BETA,
+    DELTA,
     LEDGER_CONTACT,
     LEDGER_EXTERNAL,
     LEDGER_KINETIC,
     LEDGER_NUMERICAL,
+    LEDGER_OWED,
     LEDGER_PLASTIC,
-    LEDGER_TO_COME,
+    STEP,
+    WANTED_BETA,
+    WANTED_DELTA,
 )
 from sim.memory import floats, kernel
 
-# Share of the ledger's largest entry that is rounding.
-_ROUNDING = 1e-13
+# Shares of the ledger's largest entry: what is rounding, and what the average-acceleration rule may create; and by how
+# much bodies may turn in its steps [rad].
+_ROUNDING, _BOUND, _TURN = 1e-13, 0.1, 0.25
+
+
+@kernel
+def choose_scheme(t):  # type: ignore[no-untyped-def]
+    """Time integration of a step that begins: the one that is wanted, or implicit Euler."""
+    settings, ledger = views.settings(t), views.ledger(t)
+    largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
+    least = -_BOUND * largest if settings[BETA] != 0.0 else 0.0
+    implicit = settings[WANTED_BETA] == 0.0 or ledger[LEDGER_NUMERICAL] < least
+    start, turn = views.per_body(t, at.START_VELOCITY), _TURN / settings[STEP]
+    for i in range(t[at.MOVING]):
+        implicit = implicit or abs(start[i, 2]) > turn
+    settings[BETA] = 0.0 if implicit else settings[WANTED_BETA]
+    settings[DELTA] = 1.0 if implicit and settings[WANTED_BETA] != 0.0 else settings[WANTED_DELTA]
 
 
 @kernel
 def close_from_below(t, contact, plastic, numerical):  # type: ignore[no-untyped-def]
-    """Do so; the ledger's entries as they were before this step [J]."""
+    """Keep numerical dissipation from being negative; the ledger's entries as they were before this step [J]."""
     ledger = views.ledger(t)
-    if views.settings(t)[BETA] != 0.0 or ledger[LEDGER_NUMERICAL] >= 0.0:
+    if ledger[LEDGER_CONTACT] < 0.0:
+        ledger[LEDGER_NUMERICAL] += ledger[LEDGER_CONTACT]
+        ledger[LEDGER_CONTACT] = 0.0
+    least = min(numerical, 0.0)
+    if views.settings(t)[BETA] != 0.0:
         return
-    move_between(ledger, LEDGER_CONTACT, ledger[LEDGER_CONTACT] - contact)
+    if ledger[LEDGER_NUMERICAL] >= least:
+        paid = min(ledger[LEDGER_OWED], max(ledger[LEDGER_NUMERICAL], 0.0))
+        ledger[LEDGER_OWED] -= paid
+        ledger[LEDGER_PLASTIC] += paid
+        ledger[LEDGER_NUMERICAL] -= paid
+        return
+    move_between(ledger, LEDGER_CONTACT, ledger[LEDGER_CONTACT] - contact, least)
     largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
     take_out(t, min(-_ROUNDING * largest, numerical) - ledger[LEDGER_NUMERICAL])
-    ledger[LEDGER_TO_COME] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC] - plastic)
+    ledger[LEDGER_OWED] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC] - plastic, least)
 
 
 @kernel
-def move_between(ledger, entry, most):  # type: ignore[no-untyped-def]
-    """Move what numerical dissipation lacks from an ``entry``, ``most`` at the most [J]; returns how much."""
-    moved = max(min(-ledger[LEDGER_NUMERICAL], most), 0.0)
+def move_between(ledger, entry, most, least):  # type: ignore[no-untyped-def]
+    """Move what numerical dissipation lacks to its ``least`` from an ``entry``, at the ``most``; returns how much."""
+    moved = max(min(least - ledger[LEDGER_NUMERICAL], most), 0.0)
     ledger[entry] -= moved
     ledger[LEDGER_NUMERICAL] += moved
     return moved

@@ -73,15 +73,18 @@ _FIRST_ADDRESS = 25
 ) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 44)
 CONTROL_WORDS = _FIRST_ADDRESS + 44
 
-# Settings (float64); the last three are those of the load pattern's spring, see `spread`.
+# Settings (float64); the spread ones are those of the load pattern's spring, see `spread`; BETA and DELTA of a step are
+# chosen from the wanted ones.
 STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL, STEP_RATIO, ROUNDING = 0, 1, 2, 3, 4, 5, 6
 SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 7, 8, 9
-SETTINGS_WORDS = 10
+WANTED_BETA, WANTED_DELTA = 10, 11
+SETTINGS_WORDS = 12
 
-# Ledger [J], see `energy`: running totals, the present kinetic and elastic energy, and plastic work to be booked yet.
+# Ledger [J], see `energy`: running totals, the present kinetic and elastic energy, plastic work that is to be booked in
+# the next step, and such that nothing has paid for yet.
 LEDGER_EXTERNAL, LEDGER_KINETIC, LEDGER_ELASTIC, LEDGER_PLASTIC = 0, 1, 2, 3
-LEDGER_CONTACT, LEDGER_VISCOUS, LEDGER_NUMERICAL, LEDGER_TO_COME = 4, 5, 6, 7
-LEDGER_WORDS = 8
+LEDGER_CONTACT, LEDGER_VISCOUS, LEDGER_NUMERICAL, LEDGER_TO_COME, LEDGER_OWED = 4, 5, 6, 7, 8
+LEDGER_WORDS = 9
 
 # Geometry of a joint: anchor on a and on b (from their centres of gravity, body coordinates), rest angle of the
 # joint's frame on a and on b, share α of b's rotation in the frame, cosine and sine of the two rest angles, extension

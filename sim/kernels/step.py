@@ -28,9 +28,9 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.commit import commit, weaken
 from sim.kernels.complement import NOT_FINITE, gather_contacts, sum_up, touch
-from sim.kernels.contacts import collect
+from sim.kernels.contacts import collect, hand_back
 from sim.kernels.energy import close
-from sim.kernels.guard import close_from_below
+from sim.kernels.guard import choose_scheme, close_from_below
 from sim.kernels.inertia import give_back, mass_of, moment_of, weigh
 from sim.kernels.kinematics import leave_out, prepare
 from sim.kernels.layout import CACHED, INERTIA_I, LEDGER_CONTACT, LEDGER_NUMERICAL, LEDGER_PLASTIC, WHERE
@@ -61,6 +61,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     t[at.FRESH] = 1
     start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
     load_velocities(t, start)
+    choose_scheme(t)
     for i in range(t[at.MOVING]):
         x, y, w = start[i, 0] - last[i, 0], start[i, 1] - last[i, 1], start[i, 2] - last[i, 2]
         if x != 0.0 or y != 0.0 or w != 0.0:
@@ -85,6 +86,12 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     clear(views.per_body(t, at.CONTACT_IMPULSE))
     t[at.PUSHED_APART] = 0
     collect(c, t)
+    if t[at.MISSED] > 0:
+        # Python makes room, and all contacts are collected anew.
+        hand_back(t)
+        t[at.BROKE] = 0
+        call_notice(t[at.NOTICE], t[at.KEY])
+        collect(c, t)
 
 
 @njit(error_model="numpy")
@@ -322,5 +329,5 @@ def finish(c):  # type: ignore[no-untyped-def]
     else:
         clear(shift)
     t[at.HEAD], t[at.NEXT] = 0, 0
-    if t[at.FAULT] >= 0 or t[at.BROKE] > 0 or t[at.MISSED] > 0:
+    if t[at.FAULT] >= 0 or t[at.BROKE] > 0:
         call_notice(t[at.NOTICE], t[at.KEY])

@@ -2,7 +2,7 @@
 
 const ACCOUNT_COLOURS = {
   external: "#6b7280", kinetic: "#1f77d0", elastic: "#2a9d6f", plastic: "#d1495b", contact: "#e08a1e", viscous: "#9a4fb0",
-  numerical: "#0e8c9b",
+  numerical: "#0e8c9b", stock: "#8c6d46",
 };
 
 class EnergyLedger {

@@ -1,0 +1,150 @@
+"""The ledger of a whole space: its structures, and the loose bodies beside them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pymunk
+
+from sim import chipmunk
+from sim.energy import Energy
+from sim.joint import DuctileJoint
+from sim.joint_watch import JointWatch
+from sim.kernels import compiled_callbacks
+from sim.kernels.loose import HELD, JOINED, LOOSE, TIED, read, touching
+
+
+class LooseLedger:
+    """Where the energy of the dynamic bodies goes that no ductile joint holds.
+
+    Reckoned as a structure's is (`sim.kernels.energy`): with the means of the velocities before and after a step. What
+    structures do to loose bodies at contacts is external work here, and the same with the other sign there.
+
+    Parameters
+    ----------
+    space : pymunk.Space
+        As it is before a step; the bodies' kinetic energy then counts as given from outside.
+
+    Attributes
+    ----------
+    energy : Energy
+        So far.
+    """
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self._space = space
+        self.energy = Energy()
+        self._bodies: list[pymunk.Body] = []
+        self._addresses = self._order = np.zeros(0, dtype=np.int64)
+        # By address, kinds and velocities after the last step; by arbiter and hash, contacts' impulses and when.
+        self._before: dict[int, tuple[int, np.ndarray]] = {}
+        self._impulses: dict[tuple[int, int], tuple[int, float, float]] = {}
+        self._step, self._stamp = 0.0, 0
+        # By which a ductile joint is known, once there is one.
+        self._functions = 0
+        self._look()
+
+    def note(self) -> None:
+        """Take note of a step."""
+        h, before = self._space.current_time_step, self._before
+        self._stamp += 1
+        kind, now, mass, places, touches = self._look()
+        was = [before.get(address, (JOINED, v)) for address, v in zip(self._addresses.tolist(), now, strict=True)]
+        loose = (kind == LOOSE) | (kind == TIED)
+        stayed = loose & np.array([k in (LOOSE, TIED) for k, _ in was], dtype=bool)
+        start = np.array([v for _, v in was]).reshape(-1, 3)
+        mean = 0.5 * (start + now)
+        moving = np.where(loose[:, None], mass, 0.0)
+        gained = np.sum(moving * (now - start) * mean, axis=1)
+        weight = h * np.sum(moving[:, :2] * mean[:, :2] * self._space.gravity, axis=1)
+        by_contacts, by_others, lost = self._contacts(kind, mean, places, touches, h)
+        # All that changed a body's motion beside its weight and contacts.
+        rest = np.where(stayed, gained - weight - by_contacts, 0.0)
+        tied = kind == TIED
+        kinetic = 0.5 * float(np.sum(moving * now**2))
+        # Bodies that came off a structure, or into the space, bring their energy, and those that went take theirs.
+        came = kinetic - self.energy.kinetic - float(gained[stayed].sum())
+        external = float(weight[stayed].sum() + rest[~tied].sum()) + by_others + came
+        self.energy += Energy(
+            external=external, kinetic=kinetic - self.energy.kinetic, contact=lost, stock=-float(rest[tied].sum())
+        )
+        self._step = h
+
+    def _look(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Kinds, velocities and masses of the bodies, and their contacts, which are kept for the next step."""
+        bodies = list(self._space.bodies)
+        if bodies != self._bodies:
+            self._bodies = bodies
+            self._addresses = np.array([chipmunk.body_address(body) for body in bodies], dtype=np.int64)
+            self._order = np.argsort(self._addresses)
+        if self._functions == 0 and any(isinstance(c, DuctileJoint) for c in self._space.constraints):
+            self._functions = compiled_callbacks().functions.ctypes.data
+        kind, velocity, mass = read(self._addresses, self._functions)
+        self._before = dict(zip(self._addresses.tolist(), zip(kind.tolist(), velocity, strict=True), strict=True))
+        return kind, velocity, mass, *touching(self._addresses, self._order, kind)
+
+    def _contacts(
+        self, kind: np.ndarray, mean: np.ndarray, places: np.ndarray, touches: np.ndarray, h: float
+    ) -> tuple[np.ndarray, float, float]:
+        """Work of contacts on each loose body; that of structures and held bodies; and what was lost."""
+        work, by_others, lost = np.zeros(len(kind)), 0.0, 0.0
+        ratio = h / self._step if self._step > 0.0 else 1.0
+        kept, self._impulses = self._impulses, {}
+        for (arbiter, hashed, a, b, first), (nx, ny, ax, ay, bx, by, jn, jt) in zip(
+            places.tolist(), touches.tolist(), strict=True
+        ):
+            joined = JOINED in (kind[i] for i in (a, b) if i >= 0)
+            self._impulses[arbiter, hashed] = self._stamp, jn, jt
+            # What a contact keeps has the last steps' impulse in it, of which Chipmunk has applied a share.
+            share = (1.0 if joined else 0.0) if first else ratio
+            if share != 1.0 and (arbiter, hashed) in kept:
+                _, kn, kt = kept[arbiter, hashed]
+                jn, jt = jn + (share - 1.0) * kn, jt + (share - 1.0) * kt
+            x, y = jn * nx - jt * ny, jn * ny + jt * nx
+            relative = 0.0
+            for i, rx, ry, sign in ((a, ax, ay, -1.0), (b, bx, by, 1.0)):
+                u, v, w = mean[i].tolist() if i >= 0 else (0.0, 0.0, 0.0)
+                done = sign * (x * (u - w * ry) + y * (v + w * rx))
+                if i >= 0 and kind[i] in (LOOSE, TIED):
+                    work[i] += done
+                    relative += done
+                elif i < 0 or kind[i] == HELD:
+                    by_others -= done
+                    relative += done
+            if joined:
+                by_others += relative
+            else:
+                lost -= relative
+        # Chipmunk keeps contacts for some steps in which shapes do not touch.
+        oldest = self._stamp - self._space.collision_persistence
+        self._impulses = {key: one for key, one in kept.items() if one[0] >= oldest} | self._impulses
+        return work, by_others, lost
+
+
+class SystemLedger:
+    """Where the energy of a space goes: that of all structures there are or were, and of the loose bodies.
+
+    Parameters
+    ----------
+    space : pymunk.Space
+        As it is before a step.
+    joints : JointWatch, optional
+        One that is kept up to date already.
+    """
+
+    def __init__(self, space: pymunk.Space, joints: JointWatch | None = None) -> None:
+        self._own = joints is None
+        self._joints = JointWatch(space) if joints is None else joints
+        self._loose = LooseLedger(space)
+        if self._own:
+            self._joints.note()
+
+    def note(self) -> None:
+        """Take note of a step; to be called after each."""
+        if self._own:
+            self._joints.note()
+        self._loose.note()
+
+    @property
+    def energy(self) -> Energy:
+        """So far [J]; ``external`` is the sum of all the others, to rounding."""
+        return self._joints.ledger() + self._loose.energy

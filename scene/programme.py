@@ -119,4 +119,4 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     fibres: Annotated[int, msgspec.Meta(ge=4, le=1000)] = 8
     hinge_length: Length | None = None
     refine_at: Annotated[float, msgspec.Meta(gt=0.0)] | None = None
-    coarse_joints: Annotated[int, msgspec.Meta(ge=2, le=1000)] = 3
+    coarse_joints: JointCount = 4

@@ -94,16 +94,21 @@ class Chain:
         stored: np.ndarray = 0.5 * np.einsum("ni,ni->n", q - self.rest, self.force(q))
         return stored
 
-    def laid(self, force: np.ndarray, like: np.ndarray, start: End | None, end: End | None) -> np.ndarray | None:
+    def excess(self, q: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """Of deformations ``q`` what neither ``force`` nor what is at rest explains, (n, 3); of hinges the rotation."""
+        rest: np.ndarray = q - self.rest - np.einsum("nij,nj->ni", self._compliance(), force)
+        return rest
+
+    def laid(self, force: np.ndarray, excess: np.ndarray, start: End | None, end: End | None) -> np.ndarray | None:
         """Poses (n - 1, 3) at which the joints bear ``force`` (n, 3), but for what closes the line between its ends.
 
-        What closes it are forces that are in equilibrium by themselves: a constant N and Q, and a straight M. At hinges
-        the rotation is free, and that of ``like`` (n, 3) to begin with. A line that is held at one end goes from there;
-        of one that nothing holds only the shape means anything. None when it does not close.
+        What closes it are forces that are in equilibrium by themselves: a constant N and Q, and a straight M. Joints
+        are deformed further by an ``excess`` (n, 3); at hinges the rotation is free, and that to begin with. A line
+        that is held at one end goes from there; of one that nothing holds only the shape means anything. None when it
+        does not close.
         """
-        compliance, given = self._compliance(), self.rest.copy()
+        compliance, given = self._compliance(), self.rest + excess
         hinges = np.flatnonzero(self._hinged())
-        given[hinges, 2] = like[hinges, 2]
         # Rows N, Q, M of what a unit of N, Q and M at the start is at each joint; it is no moment at a hinge.
         balance = np.zeros((len(self.points), 3, 3))
         balance[:, [0, 1, 2], [0, 1, 2]] = 1.0
@@ -170,17 +175,23 @@ class Chain:
         return np.column_stack([centre.real, centre.imag, angle + turn])
 
 
-def interpolated(points: np.ndarray, force: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """N, Q and M at points ``at`` along a member that bears ``force`` (n, 3) at ``points`` (n,).
+def interpolated(chain: Chain, force: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """N, Q and M at points ``at`` along a member that bears ``force`` (n, 3) at the joints of ``chain``.
 
-    Between two points N is straight, and M the cubic that has there the moments and, Q = -dM/dx, the shear forces: what
-    a load gives that changes evenly along the member, as that of inertia.
+    Between two joints N is straight, and M the cubic that has there the moments and, Q = -dM/dx, the shear forces: what
+    a load gives that changes evenly along the member, as that of inertia. What belongs to the nodes bears on them, so
+    at both ends M goes straight until the pieces begin.
     """
+    points, known = chain.points.copy(), force.copy()
+    points[[0, -1]] = chain.stops[[0, -1]]
+    known[[0, -1], 2] -= force[[0, -1], 1] * (points - chain.points)[[0, -1]]
     i = np.clip(np.searchsorted(points, at, side="right") - 1, 0, len(points) - 2)
     length = points[i + 1] - points[i]
     t = (at - points[i]) / length
-    (N0, Q0, M0), (N1, Q1, M1) = force[i].T, force[i + 1].T
+    (N0, Q0, M0), (N1, Q1, M1) = known[i].T, known[i + 1].T
     M = (1 + 2 * t) * (1 - t) ** 2 * M0 + t**2 * (3 - 2 * t) * M1
     M -= length * (t * (1 - t) ** 2 * Q0 - t**2 * (1 - t) * Q1)
     slope = 6 * t * (1 - t) * (M1 - M0) / length - (1 - t) * (1 - 3 * t) * Q0 - t * (3 * t - 2) * Q1
-    return np.column_stack([(1 - t) * N0 + t * N1, -slope, M])
+    found = np.column_stack([(1 - t) * N0 + t * N1, -slope, M])
+    found[[0, -1]] = force[[0, -1]]
+    return found

@@ -29,6 +29,7 @@ class MemberLaws:
             if law not in LAWS:
                 raise ValueError(f'there is no joint law "{law}"; the laws are {", ".join(LAWS)}')
         self._scene, self._model = scene, model
+        self._fibres: dict[tuple[int, int, int], FibreSection] = {}
         self._surfaces: dict[tuple[str, str], FacetSurface] = {}
 
     def joint(self, name: str, length: float, *, pinned: bool = False, elastic: bool = False) -> Law:
@@ -46,16 +47,19 @@ class MemberLaws:
             return ElasticPlastic((c.EA / length, shear, 0.0), (c.N_max, Q_max, 0.0))
         if elastic:
             return ElasticPlastic((c.EA / length, shear, c.EI / length), (math.inf, math.inf, math.inf))
-        law: Law = section_law(
-            model.law,
-            member.section,
-            member.material,
-            length,
-            criterion=self._scene.criterion,
-            fibres=model.fibres,
-            shear_stiffness=shear,
-            surface=self._surface(member) if model.law == "interaction" else None,
-        )
+        law: Law
+        if model.law == "fibre":
+            law = replace(self._fibre(member, model.fibres), length=length, shear_stiffness=shear)
+        else:
+            law = section_law(
+                model.law,
+                member.section,
+                member.material,
+                length,
+                criterion=self._scene.criterion,
+                shear_stiffness=shear,
+                surface=self._surface(member) if model.law == "interaction" else None,
+            )
         if isinstance(law, ElasticPlastic | FibreSection):
             law = replace(law, capacity=(law.capacity[0], Q_max, law.capacity[2]))
         return law
@@ -64,6 +68,15 @@ class MemberLaws:
         if self._scene.members[name].theory == "euler-bernoulli":
             return _SHEAR_RIGID * c.EI / self._scene.axis(name)[2] ** 2
         return c.GA_s
+
+    def _fibre(self, member: Member, fibres: int) -> FibreSection:
+        """The section cut into fibres, for a joint of a metre, which takes a millisecond or two."""
+        key = (id(member.section), id(member.material), fibres)
+        if key not in self._fibres:
+            self._fibres[key] = FibreSection.of_section(
+                member.section, member.material, 1.0, fibres, self._scene.criterion
+            )
+        return self._fibres[key]
 
     def _surface(self, member: Member) -> FacetSurface:
         """Members of one section and material share a surface, which takes some hundredths of a second to cut."""

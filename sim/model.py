@@ -49,7 +49,8 @@ class Model:
         |N| / N_max + |M| / M_yield or |Q| / Q_max passes this in one of their joints [-]. By default they do not start
         coarse.
     coarse_joints : int
-        With 3, the elastic answer is exact under loads at nodes and under even loads.
+        Where a member starts coarse. With 3 and more, the elastic answer is exact under loads at nodes and under even
+        loads; with 4, its first natural frequency is right to a thousandth.
     members : mapping
         By name, the members that have a model of their own.
     """
@@ -65,7 +66,7 @@ class Model:
     hinge_length: float | None = None
     shear_yields: bool = True
     refine_at: float | None = None
-    coarse_joints: int = 3
+    coarse_joints: int = 4
     members: Mapping[str, MemberModel] = field(default_factory=dict, hash=False)
 
     def of(self, member: str) -> MemberModel:

@@ -2,9 +2,20 @@
 
 from __future__ import annotations
 
+import ctypes
+
 import numpy as np
 
 from sim.laws import FibreSection, Law
+
+_RESPOND = ctypes.CFUNCTYPE(None, *[ctypes.c_int64] * 4)
+
+
+def borne(law: Law, parameters: np.ndarray, state: np.ndarray, deformation: np.ndarray) -> np.ndarray:
+    """N, Q and M of a joint with ``deformation`` (3,) by its law, (3,)."""
+    q, out = np.array(deformation, dtype=float), np.zeros(9)
+    _RESPOND(law.respond_address)(*(array.ctypes.data for array in (parameters, state, q, out)))
+    return out[:3]
 
 
 def residual(law: Law, state: np.ndarray) -> np.ndarray:

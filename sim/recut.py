@@ -31,7 +31,7 @@ from sim.kernels import layout as at
 from sim.laws import Law
 from sim.member_joints import Joined, MemberJoints
 from sim.pieces import Pieces
-from sim.plastic_state import locked_in, residual, stretched
+from sim.plastic_state import borne, locked_in, residual, stretched
 from sim.rules import Rule
 from sim.structure import Structure
 
@@ -91,9 +91,11 @@ def recut(
     rest = np.array([np.zeros(3) if joint is None else residual(joint.law, _state(joint)) for joint in old])
     coarse = _chain(pieces, name, before, [None if joint is None else joint.law for joint in old], rest)
     new = [_Successor.at(maker, name, after, i) if _holds(ends, i, after) else None for i in range(len(after.points))]
-    for joint, x in zip(old, before.points, strict=True):
+    shares = np.zeros((len(new), len(old)))
+    for k, joint in enumerate(old):
         if joint is not None:
-            _hand_on(joint, results[joint.index], [(own, share) for own, share in _nearest(new, after.points, x)])
+            shares[:, k] = _shares([own is not None for own in new], after.points, before.points[k])
+            _hand_on(joint, results[joint.index], [(own, share) for own, share in zip(new, shares[:, k], strict=True)])
     fine = _chain(
         pieces,
         name,
@@ -105,13 +107,13 @@ def recut(
     moving = _Moving([piece.body for piece in pieces.of[name]])
     undamped = structure.scheme[0] != 0.0
     reach = structure.step * (0.5 if undamped else 1.0)
-    now, then = (_Line.of(coarse, fine, moving, ends, ahead) for ahead in (0.0, reach))
+    now, then = (_Line.of(coarse, fine, shares, moving, old, ahead) for ahead in (0.0, reach))
     if now.poses is None or then.poses is None:
         return None
     work = _work(coarse, fine, then, _force_on(structure, moving.bodies))
     locked = [0.0 if own is None else locked_in(own.law, own.state) for own in new]
-    stored = fine.energy(then.deformation) + locked
-    stored_before = stored if undamped else fine.energy(now.deformation) + locked
+    stored = fine.energy(then.borne) + locked
+    stored_before = stored if undamped else fine.energy(now.borne) + locked
     passed_on = sum(0.5 * (results[j.index, at.RESULT_BEFORE] + results[j.index, at.RESULT_ELASTIC]) for j in gone)
     kinetic = moving.kinetic + float(passed_on - 0.5 * (stored_before + stored).sum()) + work
     velocity = carried(
@@ -128,7 +130,7 @@ def recut(
     for piece, (x, y, spin) in zip(made, velocity.tolist(), strict=True):
         piece.body.velocity, piece.body.angular_velocity = (x, y), spin
     pieces.replace(name, made)
-    force = fine.force(then.deformation)
+    force = fine.force(then.borne)
     joined: Joined = []
     heirs = {}
     for i, (between, own) in enumerate(zip(maker.chain(name, [piece.body for piece in made]), new, strict=True)):
@@ -186,34 +188,41 @@ class _Moving:
 
 @dataclass(frozen=True)
 class _Line:
-    """A member's pieces before and after, no poses if no line closes, and the deformations of the new joints."""
+    """A member's pieces before and after, no poses if no line closes, and the new joints' deformations.
+
+    Of these, the part that is ``borne`` is what forces explain, or stays without force. What goes beyond is what the
+    old joints yield by within the time ahead, and the new ones are yet to.
+    """
 
     before: np.ndarray
     poses: np.ndarray | None
     deformation: np.ndarray
+    borne: np.ndarray
 
     @classmethod
     def of(
         cls,
         coarse: Chain,
         fine: Chain,
+        shares: np.ndarray,
         moving: _Moving,
-        ends: tuple[DuctileJoint | None, DuctileJoint | None],
+        old: Sequence[DuctileJoint | None],
         ahead: float,
     ) -> _Line:
-        """The line as it would be if all went on as it moves for a time ``ahead`` [s]."""
+        """The line as it would be if all went on as it moves for a time ahead [s]."""
         before = moving.poses + ahead * moving.velocity
-        start, end = (None if joint is None else _side(joint, i, ahead) for i, joint in enumerate(ends))
+        start, end = (None if joint is None else _side(joint, i, ahead) for i, joint in enumerate((old[0], old[-1])))
         nowhere = End(0.0j, 0.0)
         q = coarse.deformation(before, start or nowhere, end or nowhere)
-        like = np.zeros((len(fine.points), 3))
-        like[0], like[-1] = q[0], q[-1]
-        poses = fine.laid(interpolated(coarse.points, coarse.force(q), fine.points), like, start, end)
+        force = np.array([np.zeros(3) if joint is None else _borne(joint, q[i]) for i, joint in enumerate(old)])
+        excess = shares @ coarse.excess(q, force)
+        poses = fine.laid(interpolated(coarse, force, fine.points), excess, start, end)
         if poses is not None and start is None and end is None:
             poses = _put(poses, fine, before, moving.weight[:, 0])
         if poses is None:
-            return cls(before, None, like)
-        return cls(before, poses, fine.deformation(poses, start or nowhere, end or nowhere))
+            return cls(before, None, excess, excess)
+        deformation = fine.deformation(poses, start or nowhere, end or nowhere)
+        return cls(before, poses, deformation, deformation - excess)
 
 
 def _holds(ends: tuple[DuctileJoint | None, DuctileJoint | None], i: int, rule: Rule) -> bool:
@@ -223,6 +232,11 @@ def _holds(ends: tuple[DuctileJoint | None, DuctileJoint | None], i: int, rule: 
 def _state(joint: DuctileJoint) -> np.ndarray:
     assert joint.structure is not None
     return joint.structure.tables.state(joint.index)
+
+
+def _borne(joint: DuctileJoint, deformation: np.ndarray) -> np.ndarray:
+    assert joint.structure is not None
+    return borne(joint.law, joint.structure.tables.parameters(joint.index), _state(joint), deformation)
 
 
 def _chain(
@@ -242,32 +256,35 @@ def _chain(
     )
 
 
-def _nearest(new: Sequence[_Successor | None], points: np.ndarray, x: float) -> list[tuple[_Successor, float]]:
-    """The joint at ``x``, or those before and after it, each with its share by the lever rule."""
-    own = [(point, joint) for point, joint in zip(points.tolist(), new, strict=True) if joint is not None]
-    for point, joint in own:
-        if abs(point - x) < _SAME:
-            return [(joint, 1.0)]
-    before, after = [p for p in own if p[0] < x][-1:], [p for p in own if p[0] > x][:1]
-    if not before or not after:
-        return [((before or after)[0][1], 1.0)]
-    share = (x - before[0][0]) / (after[0][0] - before[0][0])
-    return [(before[0][1], 1.0 - share), (after[0][1], share)]
+def _shares(there: Sequence[bool], points: np.ndarray, x: float) -> np.ndarray:
+    """Shares of the joints at ``points``, those that are there, in one at ``x``, by the lever rule."""
+    own = np.flatnonzero(there)
+    shares = np.zeros(len(points))
+    nearest = own[np.argmin(np.abs(points[own] - x))]
+    before, after = own[points[own] < x], own[points[own] > x]
+    if abs(points[nearest] - x) < _SAME or not len(before) or not len(after):
+        shares[nearest] = 1.0
+        return shares
+    i, k = before[-1], after[0]
+    shares[k] = (x - points[i]) / (points[k] - points[i])
+    shares[i] = 1.0 - shares[k]
+    return shares
 
 
-def _hand_on(joint: DuctileJoint, result: np.ndarray, to: Sequence[tuple[_Successor, float]]) -> None:
+def _hand_on(joint: DuctileJoint, result: np.ndarray, to: Sequence[tuple[_Successor | None, float]]) -> None:
     """Give what an old joint has gone through to new ones, in shares."""
     state = _state(joint)
     rest = residual(joint.law, state)
+    sums = [*range(at.RESULT_PLASTIC, at.RESULT_PLASTIC + 4), at.RESULT_DISSIPATED, at.RESULT_VISCOUS, at.RESULT_USED]
     for own, share in to:
+        if own is None or share == 0.0:
+            continue
         kept = np.zeros(3)
         if share == 1.0 and type(own.law) is type(joint.law) and len(own.state) == len(state):
             own.state = stretched(own.law, state, own.length / (24.0 * joint.geometry[at.ARC]))
             kept = residual(own.law, own.state)
         own.kink += share * rest - kept
-        sums = [*range(at.RESULT_PLASTIC, at.RESULT_PLASTIC + 4), at.RESULT_DISSIPATED, at.RESULT_VISCOUS]
         own.result[sums] += share * result[sums]
-        own.result[at.RESULT_USED] += share * result[at.RESULT_USED]
 
 
 def _side(joint: DuctileJoint, side: int, ahead: float) -> End:

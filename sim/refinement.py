@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Collection, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from sim.inheritance import succeed
-from sim.joint import DuctileJoint
 from sim.member_joints import Joined, MemberJoints
 from sim.pieces import Pieces
 from sim.recut import Recut, recut
 from sim.rules import Rule
 from sim.structure import Structure
+
+
+class _Watched(NamedTuple):
+    """Joints of coarse members in a structure: their rows, what N, Q and M there weigh (n, 3), and their members."""
+
+    structure: Structure
+    rows: np.ndarray
+    weights: np.ndarray
+    members: tuple[str, ...]
 
 
 class Refinement:
@@ -42,15 +52,11 @@ class Refinement:
         self._pieces, self._maker, self._joined, self._threshold = pieces, maker, joined, threshold
         self._rules, self._finest = rules, finest
         self._coarse = [name for name in joined if rules[name] is not finest[name]]
-        self._watched: list[tuple[DuctileJoint, str]] = []
-        self._structures: list[Structure | None] = []
-        self._rows: list[tuple[Structure, np.ndarray, np.ndarray, list[str]]] = []
-        self._watch()
-
-    def _watch(self) -> None:
-        """Watch the joints of the coarse members."""
-        self._watched = [(own[0], name) for name in self._coarse for own in self._joined[name] if own is not None]
-        self._structures, self._rows = [], []
+        # What refining needs is loaded now, and not in the middle of a run.
+        importlib.import_module("scipy.sparse.linalg")
+        bears = {name: maker.scene.capacity(name) for name in self._coarse}
+        self._weights = {name: (1.0 / c.N_max, 1.0 / c.Q_max, 1.0 / c.M_yield) for name, c in bears.items()}
+        self._watched: list[_Watched] | None = None
 
     def refine(self, members: Collection[str]) -> tuple[tuple[str, ...], dict[Structure, Structure]]:
         """Refine what bears more than the threshold, and coarse ones among ``members``.
@@ -70,29 +76,35 @@ class Refinement:
             assert old is not None
             joints = [new for joint in old.joints for new in instead.get(joint, [] if joint in gone else [joint])]
             followers[old] = succeed(old, joints, heirs, sum(cut.work for cut in due if cut.gone[0].structure is old))
-        self._watch()
+        self._watched = None
         return tuple(cut.member for cut in due), followers
 
     def _due(self) -> list[str]:
         """Coarse members that bear more than the threshold in any joint."""
-        structures = [joint.structure for joint, _ in self._watched]
-        if structures != self._structures:
-            self._structures, self._rows = structures, []
-            for structure in dict.fromkeys(s for s in structures if s is not None):
-                own = [(joint, name) for joint, name in self._watched if joint.structure is structure]
-                bears = [self._maker.scene.capacity(name) for _, name in own]
-                share = 1.0 / np.array([(c.N_max, c.Q_max, c.M_yield) for c in bears])
-                self._rows.append((structure, np.array([j.index for j, _ in own]), share, [name for _, name in own]))
+        if self._watched is None or any(own.structure.superseded for own in self._watched):
+            self._watched = self._watch()
         due: dict[str, None] = {}
-        for structure, rows, share, names in self._rows:
-            N, Q, M = (np.abs(structure.force[rows]) * share).T
+        for own in self._watched:
+            N, Q, M = (np.abs(own.structure.force[own.rows]) * own.weights).T
             for row in np.flatnonzero(np.maximum(N + M, Q) > self._threshold):
-                due[names[row]] = None
+                due[own.members[row]] = None
         return list(due)
+
+    def _watch(self) -> list[_Watched]:
+        """The joints of the coarse members, by their structures."""
+        joints = [(own[0], name) for name in self._coarse for own in self._joined[name] if own is not None]
+        watched = []
+        for structure in dict.fromkeys(joint.structure for joint, _ in joints):
+            if structure is not None and not structure.superseded:  # a broken joint stays with the one that it broke in
+                rows, members = zip(*((j.index, name) for j, name in joints if j.structure is structure), strict=True)
+                weights = np.array([self._weights[name] for name in members])
+                watched.append(_Watched(structure, np.array(rows), weights, members))
+        return watched
 
     def _cut(self, name: str) -> Recut | None:
         """Cut one member anew; None when it has come apart, or something else is joined to its pieces."""
-        old = [None if own is None or own[0].broken else own[0] for own in self._joined[name]]
+        there = set(self._pieces.space.constraints)
+        old = [own[0] if own is not None and own[0] in there else None for own in self._joined[name]]
         gone = [joint for joint in old if joint is not None]
         strangers = {joint for piece in self._pieces.of[name] for joint in piece.body.constraints} - set(gone)
         if not gone or None in old[1:-1] or strangers:

@@ -47,6 +47,8 @@ def _pass_neighbours(arbiter: pymunk.Arbiter, space: pymunk.Space, depth: float)
 
 def _way_between(first: pymunk.Body, second: pymunk.Body, longest: float) -> float:
     """Length of the structure between two bodies, from joint to joint [m]; anything beyond ``longest`` is as good."""
+    if any(isinstance(joint, DuctileJoint) and not joint.broken for joint in first.constraints & second.constraints):
+        return 0.0
     tie = itertools.count()  # bodies cannot be compared
     queue: list[tuple[float, int, pymunk.Body, tuple[float, float] | None]] = [(0.0, next(tie), first, None)]
     done: set[pymunk.Body] = set()

@@ -52,6 +52,8 @@ class Structure:
     tolerance: float
     #: Bodies of the structure: dynamic ones in order of elimination, then the others.
     bodies: tuple[pymunk.Body, ...]
+    #: Whether other structures have taken over its joints.
+    superseded = False
     # While it is restored: what was saved, and how many joints are back.
     _saved: dict[str, Any] | None = None
     _restored = 0
@@ -119,6 +121,7 @@ class Structure:
 
         In a step that has begun, the contacts go back to Chipmunk, and impulses since the last step have been seen to.
         """
+        self.superseded = True
         if not self._control[at.LEADER]:
             return self.tables[at.LAST_VELOCITY]
         self._control[at.LEADER] = 0

@@ -38,8 +38,12 @@ class Tables:
         index = {body: i for i, body in enumerate(bodies)}
         ends = np.array([[index[j.a], index[j.b]] for j in joints], dtype=np.int64)
         slots = [pattern.slot(max(e), min(e)) if max(e) < moving else -1 for e in ends.tolist()]
-        self._parameters, self._parameter_ends = _joined([j.law.parameters() for j in joints])
-        self._states, self._state_ends = _joined([j.law.state() for j in joints])
+        # Many joints share a law.
+        different = {id(j.law): j.law for j in joints}
+        own = {key: (law.parameters(), law.state(), law.elastic_tangent()) for key, law in different.items()}
+        parameters, states, tangents = zip(*(own[id(j.law)] for j in joints), strict=True)
+        self._parameters, self._parameter_ends = _joined(parameters)
+        self._states, self._state_ends = _joined(states)
         laws = np.empty((n, 5), dtype=np.int64)
         laws[:, 0] = [j.law.respond_address for j in joints]
         laws[:, 1] = [j.law.commit_address for j in joints]
@@ -66,7 +70,7 @@ class Tables:
                 at.JOINT_BODIES: ends,
                 at.GEOMETRY: np.array([j.geometry for j in joints]),
                 at.LAWS: laws,
-                at.STIFFNESS: np.array([j.law.elastic_tangent() for j in joints], dtype=float),
+                at.STIFFNESS: np.array(tangents, dtype=float),
                 at.DAMPING: np.array([j.damping for j in joints], dtype=float),
                 at.LIMITS: np.array(limits, dtype=float),
                 at.SCALE: np.ones(n),

@@ -16,6 +16,7 @@ import numpy as np
 from sim.elastic_line import Chain
 
 _MOST_STEPS = 100
+_MOST_GAIN = 4.0
 # A change whose own kinetic energy is below this share of the whole is rounding.
 _NOTHING = 1e-20
 
@@ -43,7 +44,8 @@ def carried(
     momentum : (3,) float
         Momentum x, y [N s] and angular momentum about the origin [N m s] that they shall have.
     kinetic : float
-        Kinetic energy that they shall have [J]. What a change that keeps the momenta does not reach is left.
+        Kinetic energy that they shall have [J]. What a change that keeps the momenta does not reach is left; and
+        nothing is made twice as fast by it, so that what rests stays at rest.
     reach : float
         Time τ [s].
     """
@@ -66,6 +68,7 @@ def carried(
         return velocity
 
     velocity = kept(wanted.ravel(), goal)
+    kinetic = min(kinetic, _MOST_GAIN * 0.5 * float(velocity @ (masses * velocity)))
     for _ in range(_MOST_STEPS):
         along = kept(solve(masses * velocity), np.zeros(3))
         share, reached = _share(velocity, along, masses, kinetic)

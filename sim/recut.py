@@ -6,12 +6,13 @@ implicit Euler: there the pieces are put, and then back by as much as they will 
 ledger, of the latter instant or, with implicit Euler, the mean of both.
 
 Mass, momentum and angular momentum of the member are kept to rounding, and so is its kinetic and elastic energy, but
-for what the forces on it, its weight above all, work as the pieces are put from one line to the other. Where a member
-hardly moves it may not have the kinetic energy that this takes; what is missing then is in the ledger, as numerical.
+for what the forces on it, its weight above all, work as the pieces are put from one line to the other. A member that
+hardly moves may not have the kinetic energy that this takes, and is not set in motion by what is left over; the rest is
+in the ledger, as numerical.
 
 Plastic deformations stay where they are: a new joint that takes an old one's place has its state at the same strains,
 and what is left of the old one's deformation as a kink. Between two new joints they are kinks of both, by the lever
-rule.
+rule. What fibres store against each other in what becomes a kink is lost, and in the ledger as numerical, too.
 """
 
 from __future__ import annotations
@@ -115,7 +116,8 @@ def recut(
     stored = fine.energy(then.borne) + locked
     stored_before = stored if undamped else fine.energy(now.borne) + locked
     passed_on = sum(0.5 * (results[j.index, at.RESULT_BEFORE] + results[j.index, at.RESULT_ELASTIC]) for j in gone)
-    kinetic = moving.kinetic + float(passed_on - 0.5 * (stored_before + stored).sum()) + work
+    lost = sum(locked_in(joint.law, _state(joint)) for joint in gone) - sum(locked)
+    kinetic = moving.kinetic + float(passed_on - lost - 0.5 * (stored_before + stored).sum()) + work
     velocity = carried(
         fine,
         then.poses,

@@ -132,11 +132,11 @@ def test_members_under_their_weight_stay_at_rest() -> None:
     after, ends = assembly.structure.energy, [0, 8, 9]
     assert assembly.structure.force[ends] == pytest.approx(force, rel=2e-4, abs=0.02)
     assert after.elastic == pytest.approx(before.elastic, rel=1e-4)
-    assert assembly.nodes["C"].now() == pytest.approx(at, abs=1e-6)
+    assert assembly.nodes["C"].now() == pytest.approx(at, abs=1e-8)
     assembly.structure.scheme = AVERAGE_ACCELERATION
     for _ in range(200):
         assembly.step(STEP)
-        assert assembly.nodes["C"].now() == pytest.approx(at, abs=1e-6)
+        assert assembly.nodes["C"].now() == pytest.approx(at, abs=1e-8)
         assert assembly.structure.force[ends] == pytest.approx(force, rel=2e-4, abs=0.02)
 
 
@@ -189,7 +189,8 @@ def test_what_has_yielded_is_carried_over(joints: int, law: str) -> None:
             assert structure.dissipated.sum() == pytest.approx(work, rel=1e-12)
             assert structure.plastic_deformation.sum(axis=0) == pytest.approx(plastic, rel=1e-12)
             assert now.external == pytest.approx(now.kinetic + now.elastic + now.numerical, rel=1e-12)
-            assert abs(now.numerical) <= 0.01 * (used.kinetic + used.elastic) + 1e-12
+            locked = used.elastic if law == "fibre" else 0.0  # what fibres store against each other may be lost
+            assert abs(now.numerical) <= 0.01 * (used.kinetic + used.elastic) + locked + 1e-12
         for _ in range(600):
             assembly.step(5e-3)
         residual.append(assembly.nodes["tip"].now())
@@ -354,7 +355,7 @@ def test_bad_settings_are_refused(line: str) -> None:
 
 
 def test_a_frame_struck_in_one_corner_pays_for_that_corner() -> None:
-    """The multifloor frame: within 1.5 % of the uniformly fine one with a quarter of its joints; 6 everywhere do not."""
+    """The multifloor frame: within 1.5 % of the uniformly fine one with a quarter of its joints; 6 a member are not."""
     scene = load_scene(str(Path(__file__).parent.parent / "examples" / "struck-frame.toml"))
     paths, joints = [], []
     for settings in ({"refine_at": None}, {}, {"refine_at": None, "joints": 6}):

@@ -18,7 +18,7 @@ STYLE = {
     "svg.hashsalt": "ductile-joints",
     "svg.fonttype": "none",
     "font.family": "sans-serif",
-    "font.size": 10,
+    "font.size": 11,
     "axes.edgecolor": INK,
     "axes.labelcolor": INK,
     "xtick.color": INK,

@@ -9,7 +9,7 @@ import matplotlib
 from matplotlib.figure import Figure
 
 from calibration.export import settings
-from calibration.figures import INK, MODEL, REFERENCE, STYLE, cost_axes
+from calibration.figures import FAINT, INK, MODEL, REFERENCE, STYLE, cost_axes
 from calibration.motion_tuning import HISTORY_SHARE, REFERENCE_MARGIN, MotionCalibration, MotionTrial
 from calibration.sheets import Picture, Report, Sheet, percent
 from calibration.tables import capacity_sheet, in_words, joint_sheet, stepping
@@ -120,11 +120,11 @@ def _frontier(result: MotionCalibration) -> Figure:
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.2), layout="constrained")
         axes = figure.subplots()
-        for law, marker in (("elastic-plastic", "s"), ("fibre", "o")):
+        for law, colour in (("elastic-plastic", FAINT), ("fibre", MODEL)):
             points = [_point(trial) for trial in result.trials if trial.model.law == law]
             if points:
                 costs, errors = zip(*points, strict=True)
-                axes.scatter(costs, errors, s=26, marker=marker, label=law)
+                axes.scatter(costs, errors, s=26, color=colour, label=law)
         cost, error = _point(result.best)
         axes.scatter([cost], [error], s=120, facecolors="none", edgecolors=INK, linewidths=1.4, label="chosen")
         cost_axes(axes, result.target_error)

@@ -28,6 +28,22 @@ _CLOSEST = 0.05
 AXIAL, TRANSVERSE, SHEAR = (0, 3, 6), (1, 2, 4, 5), 7
 
 
+class LinearWithBubble(ElementLineP2):  # type: ignore[misc]
+    """Quadratic functions by their values at the ends and what the middle has beyond the straight line between them.
+
+    The bubble is then no part of a movement as a whole: with large displacements it is counted from the displaced
+    chord, and loads along the member must come to its ends in full.
+    """
+
+    def lbasis(self, X: np.ndarray, i: int) -> tuple[np.ndarray, np.ndarray]:
+        """Function i and its slope at the points ``X``."""
+        value, slope = super().lbasis(X, i)
+        if i == 2:
+            return value, slope
+        middle, slope_of_middle = super().lbasis(X, 2)
+        return value + 0.5 * middle, slope + 0.5 * slope_of_middle
+
+
 @dataclass(frozen=True)
 class MemberMesh:
     """A straight member of m elements in its own axes.
@@ -53,7 +69,7 @@ class MemberMesh:
         """Consistent local nodal loads (m, 8) of even loads ``along`` and ``across`` the member [N/m]."""
         mesh = MeshLine(self.points)
         bending = Basis(mesh, ElementLineHermite())
-        axial = bending.with_element(ElementLineP2())
+        axial = bending.with_element(LinearWithBubble())
         loads = np.zeros((len(self.points) - 1, 8))
         for column, function in zip(AXIAL, axial.basis, strict=True):
             loads[:, column] = np.sum(along * function[0] * axial.dx, axis=1)
@@ -71,7 +87,7 @@ def mesh_member(length: float, elements: int) -> MemberMesh:
     halves = (np.arange(elements // 2), np.arange(elements // 2, elements))
     for part, points in zip(halves, (_RADAU_POINTS, 1.0 - _RADAU_POINTS), strict=True):
         bending = Basis(mesh, ElementLineHermite(), elements=part, quadrature=(points[None], _RADAU_WEIGHTS))
-        axial = bending.with_element(ElementLineP2())
+        axial = bending.with_element(LinearWithBubble())
         for column, function in zip(AXIAL, axial.basis, strict=True):
             b[part, :, 0, column] = function[0].grad[0]
         for column, function in zip(TRANSVERSE, bending.basis, strict=True):

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import eigsh
-from skfem import Basis, ElementLineHermite, ElementLineP1, ElementLineP2, MeshLine
+from skfem import Basis, ElementLineHermite, ElementLineP1, MeshLine
 
 from fem_reference.frame import Frame
 from fem_reference.frame_mesh import build_frame
-from fem_reference.member_mesh import AXIAL, TRANSVERSE, turned
+from fem_reference.member_mesh import AXIAL, TRANSVERSE, LinearWithBubble, turned
 from scene import Scene
 
 _COARSEST = 20
@@ -58,7 +58,7 @@ def masses(scene: Scene, frame: Frame) -> Masses:
         bending = Basis(line, ElementLineHermite(), intorder=6)
         # With large displacements the axial bubble is measured from the displaced chord, and has no mass of its own.
         large = frame.kinematics == "large"
-        axial = bending.with_element(ElementLineP1() if large else ElementLineP2())
+        axial = bending.with_element(ElementLineP1() if large else LinearWithBubble())
         count = len(mesh.points) - 1
         matrix = np.zeros((count, 8, 8))
         for basis, columns in ((axial, AXIAL[: axial.Nbfun]), (bending, TRANSVERSE)):

@@ -6,7 +6,18 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from frames import IPE300, compressed_cantilever, down, fixed_fixed, frame_scene, portal, propped, push_down, two_spans
+from frames import (
+    IPE300,
+    compressed_cantilever,
+    down,
+    fixed_fixed,
+    frame_scene,
+    portal,
+    propped,
+    push_down,
+    push_towards,
+    two_spans,
+)
 
 from fem_reference import pushover
 from fem_reference.frame_mesh import build_frame
@@ -290,3 +301,15 @@ def test_every_quoted_number_has_an_error_estimate_that_covers_its_error() -> No
     for hinge, exact_hinge in zip(rough.hinges, fine.hinges, strict=False):
         assert hinge.node == exact_hinge.node
         assert abs(hinge.load - exact_hinge.load) <= 2.0 * hinge.error_estimate * rough.load.max()
+
+
+@pytest.mark.parametrize("kinematics", ["small", "p-delta", "large"])
+def test_loads_along_a_member_come_to_its_foot_in_full(kinematics: str) -> None:
+    """A column under an even load along it: N = - q L at its foot, and q L / 2 in the middle."""
+    nodes = {"A": (0.0, 0.0, "clamped"), "B": (0.0, 4.0, "free")}
+    load = 'member = "A-B"\nper_length = [0.0, -5e4]\nkind = "dead"'
+    scene = frame_scene(nodes, [("A", "B")], push_towards("B", (1, 0), 0.01), [load], kinematics=kinematics)
+    member = pushover(scene, 1e-2).members["A-B"]
+    assert member.end_forces[0, 0, 0] == pytest.approx(-2e5, rel=1e-6)
+    middle = float(np.interp(2.0, member.station, np.asarray(member.axial_force).reshape(-1, len(member.station))[-1]))
+    assert middle == pytest.approx(-1e5, rel=1e-3)

@@ -47,7 +47,7 @@ class JointTable:
         if self._world.time < self._next - 1e-9:
             return
         self._next += self._every
-        joints = list(self._world.labels)
+        joints = self._world.all_joints
         columns = [rows(joints, name) for name in ("force", "deformation", "capacity_used", "dissipated")]
         for joint, force, deformation, used, work in zip(joints, *columns, strict=True):
             numbers = [*force[:3], *deformation[:3], float(used), float(work)]
@@ -105,7 +105,7 @@ def energy_table(recording: Recording) -> str:
 
 def as_object(world: World, name: str, seconds: float, recording: Recording) -> dict[str, Any]:
     """The answer as one object; SI. A figure that there is none of is null."""
-    joints = list(world.labels)
+    joints = world.all_joints
     used = [float(value) for value in rows(joints, "capacity_used")]
     plastic = [bool(row.any()) for row in rows(joints, "plastic_deformation")]
     structures = {joint.structure for joint in joints if joint.structure is not None}
@@ -128,6 +128,7 @@ def as_object(world: World, name: str, seconds: float, recording: Recording) -> 
             "most_used": None if most is None else {"joint": world.labels[joints[most]], "capacity_used": used[most]},
             "plastic_work": float(sum(rows(joints, "dissipated"))),
         },
+        "refined": [{"member": name, "time": moment} for moment, name in world.refined],
         "energy": {account: float(values[-1]) for account, values in recording.energy.items()},
         "unconverged": sum(structure.unconverged for structure in structures),
     }
@@ -162,6 +163,10 @@ def key_figures(answer: dict[str, Any]) -> list[tuple[str, str]]:
     joints = answer["joints"]
     broken = ", ".join(f"{entry['joint']} at {entry['time']:.3f} s" for entry in joints["broken"]) or "none"
     figures.append(("joints", f"{joints['count']}, of which {joints['yielded']} yielded; broken: {broken}"))
+    if answer["refined"]:
+        figures.append(
+            ("refined", ", ".join(f"{entry['member']} at {entry['time']:.3f} s" for entry in answer["refined"]))
+        )
     most = joints["most_used"]
     if most is not None and most["capacity_used"] > 0.0:
         figures.append(("most used joint", f"{most['joint']}, {most['capacity_used']:.1%} of its plastic capacity"))

@@ -110,7 +110,7 @@ def _reader(measure: Measure, world: World) -> Callable[[], float]:
 
 def _joints_called(name: str, world: World) -> Sequence[DuctileJoint]:
     """All joints, or those of a member, or that of the name, as there are now."""
-    return [joint for own in world.joints.values() for joint in own] if name == ALL_JOINTS else world.joints[name]
+    return world.all_joints if name == ALL_JOINTS else world.joints[name]
 
 
 def _kinetic_energy(body: pymunk.Body) -> float:

@@ -253,6 +253,11 @@ class World:
         return self._fewest_parts
 
     @property
+    def all_joints(self) -> list[DuctileJoint]:
+        """All joints that there are now, and those that broke."""
+        return [joint for own in self.joints.values() for joint in own]
+
+    @property
     def finished(self) -> bool:
         """Whether the scene's duration is over, or its push."""
         return self.push.finished if self.push is not None else self.time >= self.duration - 0.5 * self.dt

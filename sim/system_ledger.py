@@ -35,8 +35,8 @@ class LooseLedger:
         self.energy = Energy()
         self._bodies: list[pymunk.Body] = []
         self._addresses = self._order = np.zeros(0, dtype=np.int64)
-        # By address, kinds and velocities after the last step; by arbiter and hash, contacts' impulses and when.
-        self._before: dict[int, tuple[int, np.ndarray]] = {}
+        # Bodies' addresses, kinds and velocities after the last step; by arbiter and hash, contacts' impulses and when.
+        self._last = self._addresses, np.zeros(0, dtype=np.int64), np.zeros((0, 3))
         self._impulses: dict[tuple[int, int], tuple[int, float, float]] = {}
         self._step, self._stamp = 0.0, 0
         # By which a ductile joint is known, once there is one.
@@ -45,13 +45,12 @@ class LooseLedger:
 
     def note(self) -> None:
         """Take note of a step."""
-        h, before = self._space.current_time_step, self._before
+        h, last = self._space.current_time_step, self._last
         self._stamp += 1
         kind, now, mass, places, touches = self._look()
-        was = [before.get(address, (JOINED, v)) for address, v in zip(self._addresses.tolist(), now, strict=True)]
+        was, start = self._listed_now(last, now)
         loose = (kind == LOOSE) | (kind == TIED)
-        stayed = loose & np.array([k in (LOOSE, TIED) for k, _ in was], dtype=bool)
-        start = np.array([v for _, v in was]).reshape(-1, 3)
+        stayed = loose & ((was == LOOSE) | (was == TIED))
         mean = 0.5 * (start + now)
         moving = np.where(loose[:, None], mass, 0.0)
         gained = np.sum(moving * (now - start) * mean, axis=1)
@@ -79,8 +78,21 @@ class LooseLedger:
         if self._functions == 0 and any(isinstance(c, DuctileJoint) for c in self._space.constraints):
             self._functions = compiled_callbacks().functions.ctypes.data
         kind, velocity, mass = read(self._addresses, self._functions)
-        self._before = dict(zip(self._addresses.tolist(), zip(kind.tolist(), velocity, strict=True), strict=True))
+        self._last = self._addresses, kind, velocity
         return kind, velocity, mass, *touching(self._addresses, self._order, kind)
+
+    def _listed_now(
+        self, last: tuple[np.ndarray, np.ndarray, np.ndarray], now: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Kinds and velocities after the last step, in today's order; new bodies count as joined, as fast as now."""
+        addresses, kind, velocity = last
+        if addresses is self._addresses:
+            return kind, velocity
+        row = {address: i for i, address in enumerate(addresses.tolist())}
+        at = np.array([row.get(address, len(row)) for address in self._addresses.tolist()], dtype=np.int64)
+        new = at == len(row)
+        kinds, velocities = np.append(kind, JOINED)[at], np.vstack([velocity, np.zeros(3)])[at]
+        return kinds, np.where(new[:, None], now, velocities)
 
     def _contacts(
         self, kind: np.ndarray, mean: np.ndarray, places: np.ndarray, touches: np.ndarray, h: float

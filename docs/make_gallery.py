@@ -48,7 +48,9 @@ def part(name: str) -> str:
     seconds = run(world, camera.note, lambda what, share: None)
     recording = camera.recording()
     write_still(recording, moment(recording, MOMENTS.get(name)), PICTURES / f"{name}.png")
-    figures = "\n".join(f"| {what} | {value} |" for what, value in key_figures(as_object(world, name, seconds)))
+    figures = "\n".join(
+        f"| {what} | {value} |" for what, value in key_figures(as_object(world, name, seconds, recording))
+    )
     return f"## {name}\n\n{scene.title}.\n\n![{name}](images/gallery/{name}.png)\n\n| | |\n|---|---|\n{figures}\n"
 
 

@@ -32,12 +32,10 @@ from sim.kernels import layout as at
 from sim.laws import Law
 from sim.member_joints import Joined, MemberJoints
 from sim.pieces import Pieces
-from sim.plastic_state import borne, locked_in, residual, stretched
+from sim.plastic_state import borne, locked_in, residual
 from sim.rules import Rule
 from sim.structure import Structure
-
-# Points of two rules that are closer than this share of a member's length are the same.
-_SAME = 1e-9
+from sim.successors import Successor, hand_on, holds, lay, shares_at, state_of
 
 
 @dataclass(frozen=True)
@@ -89,14 +87,14 @@ def recut(
     structure, ends = gone[0].structure, (old[0], old[-1])
     assert structure is not None
     results = structure.tables[at.RESULT]
-    rest = np.array([np.zeros(3) if joint is None else residual(joint.law, _state(joint)) for joint in old])
+    rest = np.array([np.zeros(3) if joint is None else residual(joint.law, state_of(joint)) for joint in old])
     coarse = _chain(pieces, name, before, [None if joint is None else joint.law for joint in old], rest)
-    new = [_Successor.at(maker, name, after, i) if _holds(ends, i, after) else None for i in range(len(after.points))]
+    new = [Successor.new(maker, name, after, i) if holds(ends, i, after) else None for i in range(len(after.points))]
     shares = np.zeros((len(new), len(old)))
     for k, joint in enumerate(old):
         if joint is not None:
-            shares[:, k] = _shares([own is not None for own in new], after.points, before.points[k])
-            _hand_on(joint, results[joint.index], [(own, share) for own, share in zip(new, shares[:, k], strict=True)])
+            shares[:, k] = shares_at([own is not None for own in new], after.points, before.points[k])
+            hand_on(joint, results[joint.index], [(own, share) for own, share in zip(new, shares[:, k], strict=True)])
     fine = _chain(
         pieces,
         name,
@@ -116,7 +114,7 @@ def recut(
     stored = fine.energy(then.borne) + locked
     stored_before = stored if undamped else fine.energy(now.borne) + locked
     passed_on = sum(0.5 * (results[j.index, at.RESULT_BEFORE] + results[j.index, at.RESULT_ELASTIC]) for j in gone)
-    lost = sum(locked_in(joint.law, _state(joint)) for joint in gone) - sum(locked)
+    lost = sum(locked_in(joint.law, state_of(joint)) for joint in gone) - sum(locked)
     kinetic = moving.kinetic + float(passed_on - lost - 0.5 * (stored_before + stored).sum()) + work
     velocity = carried(
         fine,
@@ -141,7 +139,7 @@ def recut(
             continue
         place = maker.place(name, after, i)
         joint = maker.joint(name, own.law, place, between, (0.0, 0.0))
-        _lay(joint, own.kink, fine, i, ends)
+        lay(joint, own.kink, fine, i, ends)
         joint.at = joint.point_on(joint.b)
         own.result[:6] = *then.deformation[i], *force[i]
         own.result[[at.RESULT_BEFORE, at.RESULT_ELASTIC]] = stored_before[i], stored[i]
@@ -149,22 +147,6 @@ def recut(
         joined.append((joint, place))
     pieces.space.add(*heirs)
     return Recut(name, gone, joined, heirs, work)
-
-
-@dataclass
-class _Successor:
-    """A joint to be: its law and that law's state, a kink (3,), and what it went through, as the kernels keep it."""
-
-    law: Law
-    state: np.ndarray
-    kink: np.ndarray
-    result: np.ndarray
-    length: float
-
-    @classmethod
-    def at(cls, maker: MemberJoints, name: str, rule: Rule, i: int) -> _Successor:
-        law = maker.law(name, rule, i)
-        return cls(law, law.state(), np.zeros(3), np.zeros(at.RESULT_WORDS), maker.place(name, rule, i).length)
 
 
 class _Moving:
@@ -227,18 +209,9 @@ class _Line:
         return cls(before, poses, deformation, deformation - excess)
 
 
-def _holds(ends: tuple[DuctileJoint | None, DuctileJoint | None], i: int, rule: Rule) -> bool:
-    return not ((i == 0 and ends[0] is None) or (i == len(rule.points) - 1 and ends[1] is None))
-
-
-def _state(joint: DuctileJoint) -> np.ndarray:
-    assert joint.structure is not None
-    return joint.structure.tables.state(joint.index)
-
-
 def _borne(joint: DuctileJoint, deformation: np.ndarray) -> np.ndarray:
     assert joint.structure is not None
-    return borne(joint.law, joint.structure.tables.parameters(joint.index), _state(joint), deformation)
+    return borne(joint.law, joint.structure.tables.parameters(joint.index), state_of(joint), deformation)
 
 
 def _chain(
@@ -256,37 +229,6 @@ def _chain(
         kink=np.zeros_like(rest) if kink is None else kink,
         held=(bool(given[0]), bool(given[-1])),
     )
-
-
-def _shares(there: Sequence[bool], points: np.ndarray, x: float) -> np.ndarray:
-    """Shares of the joints at ``points``, those that are there, in one at ``x``, by the lever rule."""
-    own = np.flatnonzero(there)
-    shares = np.zeros(len(points))
-    nearest = own[np.argmin(np.abs(points[own] - x))]
-    before, after = own[points[own] < x], own[points[own] > x]
-    if abs(points[nearest] - x) < _SAME or not len(before) or not len(after):
-        shares[nearest] = 1.0
-        return shares
-    i, k = before[-1], after[0]
-    shares[k] = (x - points[i]) / (points[k] - points[i])
-    shares[i] = 1.0 - shares[k]
-    return shares
-
-
-def _hand_on(joint: DuctileJoint, result: np.ndarray, to: Sequence[tuple[_Successor | None, float]]) -> None:
-    """Give what an old joint has gone through to new ones, in shares."""
-    state = _state(joint)
-    rest = residual(joint.law, state)
-    sums = [*range(at.RESULT_PLASTIC, at.RESULT_PLASTIC + 4), at.RESULT_DISSIPATED, at.RESULT_VISCOUS, at.RESULT_USED]
-    for own, share in to:
-        if own is None or share == 0.0:
-            continue
-        kept = np.zeros(3)
-        if share == 1.0 and type(own.law) is type(joint.law) and len(own.state) == len(state):
-            own.state = stretched(own.law, state, own.length / (24.0 * joint.geometry[at.ARC]))
-            kept = residual(own.law, own.state)
-        own.kink += share * rest - kept
-        own.result[sums] += share * result[sums]
 
 
 def _side(joint: DuctileJoint, side: int, ahead: float) -> End:
@@ -328,26 +270,3 @@ def _work(coarse: Chain, fine: Chain, line: _Line, force: np.ndarray) -> float:
     y = new[..., 1] + from_new * np.sin(new[..., 2]) - old[..., 1] - from_old * np.sin(old[..., 2])
     turn = new[..., 2] - old[..., 2]
     return float(np.sum(share * (force[:, :1] * x + force[:, 1:2] * y + force[:, 2:] * turn)))
-
-
-def _lay(
-    joint: DuctileJoint, kink: np.ndarray, fine: Chain, i: int, ends: tuple[DuctileJoint | None, DuctileJoint | None]
-) -> None:
-    """Give a new joint the place on its bodies at which it bears what it shall."""
-    g = joint.geometry
-    g[at.ANCHOR_A : at.ANCHOR_A + 2] = fine.points[i] - fine.middles[i - 1], 0.0
-    g[at.REST_A] = g[at.REST_B] = 0.0
-    if i < len(fine.middles):
-        g[at.ANCHOR_B : at.ANCHOR_B + 2] = fine.points[i] - fine.middles[i], 0.0
-    if i == 0 and ends[0] is not None:
-        g[at.ANCHOR_A : at.ANCHOR_A + 2] = ends[0].geometry[at.ANCHOR_A : at.ANCHOR_A + 2]
-        g[at.REST_A] = ends[0].geometry[at.REST_A]
-    if i == len(fine.middles) and ends[1] is not None:
-        g[at.ANCHOR_B : at.ANCHOR_B + 2] = ends[1].geometry[at.ANCHOR_B : at.ANCHOR_B + 2]
-        g[at.REST_B] = ends[1].geometry[at.REST_B]
-    c, s = math.cos(g[at.REST_A]), math.sin(g[at.REST_A])
-    g[at.ANCHOR_A] += float(c * kink[0] - s * kink[1])
-    g[at.ANCHOR_A + 1] += float(s * kink[0] + c * kink[1])
-    g[at.REST_B] -= float(kink[2])
-    g[at.AXIS_A : at.AXIS_A + 2] = math.cos(g[at.REST_A]), math.sin(g[at.REST_A])
-    g[at.AXIS_B : at.AXIS_B + 2] = math.cos(g[at.REST_B]), math.sin(g[at.REST_B])

@@ -41,7 +41,11 @@ class LooseLedger:
         self._step, self._stamp = 0.0, 0
         # By which a ductile joint is known, once there is one.
         self._functions = 0
-        self._look()
+        kind, velocity, *_ = self._look()
+        # Before the first step Chipmunk does not know yet what will be a structure, and may break within it.
+        held = {body for c in space.constraints if isinstance(c, DuctileJoint) for body in (c.a, c.b)}
+        joined = np.array([body in held for body in self._bodies], dtype=bool)
+        self._last = self._addresses, np.where(joined & (kind != HELD), JOINED, kind), velocity
 
     def note(self) -> None:
         """Take note of a step."""
@@ -55,7 +59,9 @@ class LooseLedger:
         moving = np.where(loose[:, None], mass, 0.0)
         gained = np.sum(moving * (now - start) * mean, axis=1)
         weight = h * np.sum(moving[:, :2] * mean[:, :2] * self._space.gravity, axis=1)
-        by_contacts, by_others, lost = self._contacts(kind, mean, places, touches, h)
+        # What came off a structure in this step was in it when it was struck.
+        struck = np.where(was == JOINED, JOINED, kind)
+        by_contacts, by_others, lost = self._contacts(struck, mean, places, touches, h)
         # All that changed a body's motion beside its weight and contacts.
         rest = np.where(stayed, gained - weight - by_contacts, 0.0)
         tied = kind == TIED

@@ -111,3 +111,17 @@ def test_a_scene_with_vehicles_and_loose_bodies_closes(name: str) -> None:
     assert abs(now.gap) <= 1e-9 * largest(now)
     assert now.kinetic == pytest.approx(kinetic(world.space), rel=1e-9)
     assert (now.stock != 0.0) == bool(world.cars)
+
+
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 240, 1 / 1000])
+def test_a_blow_that_breaks_a_joint_is_booked_once(dt: float) -> None:
+    """½ · 200 kg · (30 m/s)² and no more, also where the foot breaks in the very first step."""
+    world = World(load_scene("post-impact"), dt, duration=0.05)
+    ledger = SystemLedger(world.space)
+    while not world.finished:
+        world.step()
+        ledger.note()
+    assert world.broken
+    assert ledger.energy.external == pytest.approx(90e3, rel=2e-3)
+    assert abs(ledger.energy.gap) < 1e-6 * 90e3
+    assert ledger.energy.contact < 0.3 * 90e3

@@ -1,5 +1,9 @@
 """Speed of the main parts; run with ``pytest benchmarks``. Compare within one run: machines differ and drift."""
 
+import subprocess
+import sys
+import timeit
+
 import numpy as np
 import pymunk
 import pytest
@@ -41,8 +45,10 @@ def chain(pieces: int, piece: float = 0.04) -> tuple[pymunk.Space, Structure]:
 
 @pytest.mark.parametrize("pieces", [10, 50, 1000, 10000])
 def test_elastic_chain_step(benchmark: BenchmarkFixture, pieces: int) -> None:
-    """One step of a chain at 1/60 s; µs a joint is in the extra column."""
+    """One step of a chain at 1/60 s; µs a joint is in the extra columns, with and without an empty space's step."""
     space, structure = chain(pieces)
+    empty = pymunk.Space()
+    empty.iterations = space.iterations
     steps = max(1, 2000 // pieces)
 
     def run() -> None:
@@ -50,8 +56,34 @@ def test_elastic_chain_step(benchmark: BenchmarkFixture, pieces: int) -> None:
             space.step(1 / 60)
 
     benchmark(run)
-    benchmark.extra_info["microseconds_per_joint_step"] = 1e6 * benchmark.stats.stats.median / (steps * pieces)
+    own = min(timeit.repeat(lambda: empty.step(1 / 60), number=2000, repeat=5)) / 2000
+    whole = benchmark.stats.stats.min / steps
+    benchmark.extra_info["microseconds_per_joint_step"] = 1e6 * whole / pieces
+    benchmark.extra_info["without_an_empty_space"] = 1e6 * (whole - own) / pieces
     assert structure.unconverged == 0
+
+
+def test_first_use_in_a_process(benchmark: BenchmarkFixture) -> None:
+    """A new process that imports `sim`, makes a joint and takes a step; processor time of each in the extra columns."""
+    code = (
+        "import time; start = time.process_time()\n"
+        "import pymunk, sim; imported = time.process_time()\n"
+        "space, body = pymunk.Space(), pymunk.Body(1.0, 1.0)\n"
+        "law = sim.ElasticPlastic((1e6, 1e6, 1e4), (1e4, 1e4, 1e3))\n"
+        "space.add(body, sim.DuctileJoint(space.static_body, body, (0.0, 0.0), law))\n"
+        "space.step(0.01)\n"
+        "print(imported - start, time.process_time() - imported)"
+    )
+
+    def run() -> list[float]:
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        return [float(seconds) for seconds in done.stdout.split()]
+
+    run()  # compiles what is not yet in the cache
+    times = np.array([run() for _ in range(5)])
+    benchmark.pedantic(run, rounds=1)
+    imports, first_use = np.median(times, axis=0).tolist()
+    benchmark.extra_info |= {"import_seconds": imports, "first_use_seconds": first_use}
 
 
 def test_frame_of_a_thousand_joints(benchmark: BenchmarkFixture) -> None:

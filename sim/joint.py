@@ -91,7 +91,7 @@ class DuctileJoint(pymunk.Constraint):
         self.on_break = on_break
         rest = (direction - a.angle, direction - b.angle)
         axes = [f(angle) for angle in rest for f in (math.cos, math.sin)]
-        self.geometry = [*_anchor(a, self.at), *_anchor(b, self.at), *rest, turn, *axes, length / 24.0]
+        self.geometry = np.array([*_anchor(a, self.at), *_anchor(b, self.at), *rest, turn, *axes, length / 24.0])
         for what, values in (
             ("position or direction", self.geometry),
             ("stiffness", law.elastic_tangent()),

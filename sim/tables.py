@@ -88,7 +88,7 @@ class Tables:
                 at.SHIFT: np.zeros((len(bodies), 6)),
                 at.DIAGONAL: np.zeros((moving, 9)),
                 at.LOWER_BLOCKS: np.zeros((below, 9)),
-                at.SCALED_BLOCKS: np.zeros((below, 9)),
+                at.COLUMN: np.zeros((np.diff(pattern.column_start).max(initial=0), 9)),
                 at.RESULT: np.zeros((n, at.RESULT_WORDS)),
                 at.BODY_KEYS: keys,
                 at.BODY_VALUES: values,

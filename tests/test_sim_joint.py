@@ -1,12 +1,16 @@
 """A joint in a space of one's own: how it is made, and what it says."""
 
+import gc
 import itertools
 import math
+import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pymunk
 import pytest
 
+import sim
 from capacity import InputError, capacity, parse_material, parse_section
 from sim import (
     AVERAGE_ACCELERATION,
@@ -16,8 +20,10 @@ from sim import (
     JointArrays,
     Limits,
     RigidPlastic,
+    Structure,
     section_law,
 )
+from sim.kernels import layout as at
 
 STEEL, BAR = parse_material("S235"), parse_section("IPE 200")
 
@@ -169,3 +175,26 @@ def test_arrays_over_joints_of_several_structures_and_a_broken_one() -> None:
     assert arrays.force[[0, 2], 2] == pytest.approx([moment, moment], rel=1e-3)
     assert arrays.capacity_used.tolist() == [0.0, 1.0, 0.0]
     assert arrays.dissipated[1] == pytest.approx(10.0 * 0.05, rel=0.05)
+
+
+def test_a_joint_takes_less_than_two_kilobytes() -> None:
+    """All that `sim` keeps for a joint of a chain, without what pymunk keeps for any constraint and for bodies."""
+    count, law = 1000, ElasticPlastic((1e6, 1e6, 1e4), (1e4, 1e4, 1e3))
+    space = pymunk.Space()
+    bodies = [space.static_body, *(pymunk.Body(1.0, 1.0) for _ in range(count))]
+    for i, body in enumerate(bodies[1:]):
+        body.position = (i + 0.5, 0.0)
+    own = str(Path(sim.__file__).parent / "*")
+    gc.collect()
+    tracemalloc.start()
+    try:
+        joints = [DuctileJoint(a, b, (float(i), 0.0), law) for i, (a, b) in enumerate(itertools.pairwise(bodies))]
+        structure = Structure(joints)
+        gc.collect()
+        taken = tracemalloc.take_snapshot().filter_traces(
+            [tracemalloc.Filter(inclusive=True, filename_pattern=name) for name in (own, __file__)]
+        )
+    finally:
+        tracemalloc.stop()
+    arrays = sum(structure.tables[word].nbytes for word in (at.RESULT, at.GRADIENT, at.LOWER_BLOCKS))
+    assert arrays < sum(trace.size for trace in taken.traces) < 2000 * count

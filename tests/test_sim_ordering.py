@@ -10,10 +10,10 @@ from sim.ordering import minimum_degree
 
 
 @njit
-def factorise_and_solve(count, start, rows, fill, diagonal, lower, scaled, solution):  # type: ignore[no-untyped-def]
+def factorise_and_solve(count, start, rows, fill, diagonal, lower, column, solution):  # type: ignore[no-untyped-def]
     """The kernels under test, which only compiled functions can call."""
-    blocks.factorise(count, start, rows, fill, diagonal, lower, scaled)
-    blocks.substitute(count, 0, start, rows, diagonal, scaled, solution)
+    blocks.factorise(count, start, rows, fill, diagonal, lower, column)
+    blocks.substitute(count, 0, start, rows, diagonal, lower, solution)
 
 
 @st.composite
@@ -45,10 +45,10 @@ def test_factor_solves_as_dense_algebra_does(graph: tuple[int, list[tuple[int, i
         for slot in range(pattern.column_start[column], pattern.column_start[column + 1]):
             row = pattern.column_rows[slot]
             lower[slot] = dense[3 * row : 3 * row + 3, 3 * column : 3 * column + 3].ravel()
-    scaled = np.zeros_like(lower)
+    column = np.zeros_like(lower)
     solution = right.copy()
     fill = np.append(pattern.fill_targets, 0)
-    factorise_and_solve(count, pattern.column_start, pattern.column_rows, fill, diagonal, lower, scaled, solution)
+    factorise_and_solve(count, pattern.column_start, pattern.column_rows, fill, diagonal, lower, column, solution)
     np.testing.assert_allclose(solution.ravel(), np.linalg.solve(dense, right.ravel()), rtol=1e-10, atol=1e-12)
 
 

@@ -94,10 +94,10 @@ def solve_block(blocks, k, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def factorise(moving, column_start, column_rows, fill_targets, diagonal, lower, scaled):  # type: ignore[no-untyped-def]
-    """Block L D Lᵀ in place: ``diagonal`` is factored, ``scaled`` becomes L.
+def factorise(moving, column_start, column_rows, fill_targets, diagonal, lower, column):  # type: ignore[no-untyped-def]
+    """Block L D Lᵀ in place: ``diagonal`` is factored, ``lower`` becomes L.
 
-    ``fill_targets`` lists where the update of each pair of a column's rows goes.
+    ``fill_targets`` lists where the update of each pair of a column's rows goes; ``column`` has room for the longest.
     """
     at = 0
     for k in range(moving):
@@ -105,25 +105,25 @@ def factorise(moving, column_start, column_rows, fill_targets, diagonal, lower, 
         first, last = column_start[k], column_start[k + 1]
         for p in range(first, last):
             for r in range(0, 9, 3):
-                scaled[p, r], scaled[p, r + 1], scaled[p, r + 2] = solve_block(
-                    diagonal, k, lower[p, r], lower[p, r + 1], lower[p, r + 2]
-                )
+                x, y, z = lower[p, r], lower[p, r + 1], lower[p, r + 2]
+                column[p - first, r], column[p - first, r + 1], column[p - first, r + 2] = x, y, z
+                lower[p, r], lower[p, r + 1], lower[p, r + 2] = solve_block(diagonal, k, x, y, z)
         for p in range(first, last):
-            own = column_rows[p]
-            diagonal[own, 0] -= scaled[p, 0] * lower[p, 0] + scaled[p, 1] * lower[p, 1] + scaled[p, 2] * lower[p, 2]
-            diagonal[own, 1] -= scaled[p, 0] * lower[p, 3] + scaled[p, 1] * lower[p, 4] + scaled[p, 2] * lower[p, 5]
-            diagonal[own, 2] -= scaled[p, 0] * lower[p, 6] + scaled[p, 1] * lower[p, 7] + scaled[p, 2] * lower[p, 8]
-            diagonal[own, 4] -= scaled[p, 3] * lower[p, 3] + scaled[p, 4] * lower[p, 4] + scaled[p, 5] * lower[p, 5]
-            diagonal[own, 5] -= scaled[p, 3] * lower[p, 6] + scaled[p, 4] * lower[p, 7] + scaled[p, 5] * lower[p, 8]
-            diagonal[own, 8] -= scaled[p, 6] * lower[p, 6] + scaled[p, 7] * lower[p, 7] + scaled[p, 8] * lower[p, 8]
+            own, c = column_rows[p], p - first
+            diagonal[own, 0] -= lower[p, 0] * column[c, 0] + lower[p, 1] * column[c, 1] + lower[p, 2] * column[c, 2]
+            diagonal[own, 1] -= lower[p, 0] * column[c, 3] + lower[p, 1] * column[c, 4] + lower[p, 2] * column[c, 5]
+            diagonal[own, 2] -= lower[p, 0] * column[c, 6] + lower[p, 1] * column[c, 7] + lower[p, 2] * column[c, 8]
+            diagonal[own, 4] -= lower[p, 3] * column[c, 3] + lower[p, 4] * column[c, 4] + lower[p, 5] * column[c, 5]
+            diagonal[own, 5] -= lower[p, 3] * column[c, 6] + lower[p, 4] * column[c, 7] + lower[p, 5] * column[c, 8]
+            diagonal[own, 8] -= lower[p, 6] * column[c, 6] + lower[p, 7] * column[c, 7] + lower[p, 8] * column[c, 8]
             for q in range(p + 1, last):
                 target = fill_targets[at]
                 at += 1
                 for r in range(0, 9, 3):
-                    x, y, z = scaled[q, r], scaled[q, r + 1], scaled[q, r + 2]
-                    lower[target, r] -= x * lower[p, 0] + y * lower[p, 1] + z * lower[p, 2]
-                    lower[target, r + 1] -= x * lower[p, 3] + y * lower[p, 4] + z * lower[p, 5]
-                    lower[target, r + 2] -= x * lower[p, 6] + y * lower[p, 7] + z * lower[p, 8]
+                    x, y, z = lower[q, r], lower[q, r + 1], lower[q, r + 2]
+                    lower[target, r] -= x * column[c, 0] + y * column[c, 1] + z * column[c, 2]
+                    lower[target, r + 1] -= x * column[c, 3] + y * column[c, 4] + z * column[c, 5]
+                    lower[target, r + 2] -= x * column[c, 6] + y * column[c, 7] + z * column[c, 8]
 
 
 @kernel
@@ -137,33 +137,33 @@ def factorise_matrix(t, factor):  # type: ignore[no-untyped-def]
         views.fill_targets(t),
         views.diagonal(t),
         views.lower(t),
-        views.scaled(t),
+        views.column(t),
     )
 
 
 @kernel
 def solve(t, first, x):  # type: ignore[no-untyped-def]
     """Solve with the factored matrix in place; ``x``, (bodies, 3), holds a right side that is zero before ``first``."""
-    substitute(t[at.MOVING], first, views.column_start(t), views.column_rows(t), views.diagonal(t), views.scaled(t), x)
+    substitute(t[at.MOVING], first, views.column_start(t), views.column_rows(t), views.diagonal(t), views.lower(t), x)
 
 
 @kernel
-def substitute(moving, first, column_start, column_rows, diagonal, scaled, x):  # type: ignore[no-untyped-def]
+def substitute(moving, first, column_start, column_rows, diagonal, lower, x):  # type: ignore[no-untyped-def]
     """Solve L D Lᵀ x = b in place; ``x`` holds b, which is zero before body ``first``."""
     for k in range(first, moving):
         a, b, c = x[k, 0], x[k, 1], x[k, 2]
         for p in range(column_start[k], column_start[k + 1]):
             w = column_rows[p]
-            x[w, 0] -= scaled[p, 0] * a + scaled[p, 1] * b + scaled[p, 2] * c
-            x[w, 1] -= scaled[p, 3] * a + scaled[p, 4] * b + scaled[p, 5] * c
-            x[w, 2] -= scaled[p, 6] * a + scaled[p, 7] * b + scaled[p, 8] * c
+            x[w, 0] -= lower[p, 0] * a + lower[p, 1] * b + lower[p, 2] * c
+            x[w, 1] -= lower[p, 3] * a + lower[p, 4] * b + lower[p, 5] * c
+            x[w, 2] -= lower[p, 6] * a + lower[p, 7] * b + lower[p, 8] * c
     for k in range(moving - 1, -1, -1):
         a, b, c = x[k, 0], x[k, 1], x[k, 2]
         if k >= first:
             a, b, c = solve_block(diagonal, k, a, b, c)
         for p in range(column_start[k], column_start[k + 1]):
             w = column_rows[p]
-            a -= scaled[p, 0] * x[w, 0] + scaled[p, 3] * x[w, 1] + scaled[p, 6] * x[w, 2]
-            b -= scaled[p, 1] * x[w, 0] + scaled[p, 4] * x[w, 1] + scaled[p, 7] * x[w, 2]
-            c -= scaled[p, 2] * x[w, 0] + scaled[p, 5] * x[w, 1] + scaled[p, 8] * x[w, 2]
+            a -= lower[p, 0] * x[w, 0] + lower[p, 3] * x[w, 1] + lower[p, 6] * x[w, 2]
+            b -= lower[p, 1] * x[w, 0] + lower[p, 4] * x[w, 1] + lower[p, 7] * x[w, 2]
+            c -= lower[p, 2] * x[w, 0] + lower[p, 5] * x[w, 1] + lower[p, 8] * x[w, 2]
         x[k, 0], x[k, 1], x[k, 2] = a, b, c

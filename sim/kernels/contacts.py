@@ -317,7 +317,7 @@ def push_loose(place, touch, row, amount, offset, spin):  # type: ignore[no-unty
 
 def hash_table(addresses: list[int]) -> tuple[np.ndarray, np.ndarray]:
     """Keys and values for `find`."""
-    size = 1 << max(2, (2 * len(addresses)).bit_length())
+    size = 1 << max(2, (3 * len(addresses) // 2).bit_length())
     keys, values = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=np.int64)
     for index, body in enumerate(addresses):
         slot = ((body >> 4) ^ (body >> 12)) & (size - 1)

@@ -62,7 +62,7 @@ _FIRST_ADDRESS = 25
     SOLUTION,  # (bodies, 3); stays zero for bodies that do not move
     DIAGONAL,  # (moving, 9)
     LOWER_BLOCKS,  # (lower, 9)
-    SCALED_BLOCKS,  # (lower, 9)
+    COLUMN,  # (longest column of lower blocks, 9): room to work in
     RESULT,  # (joints, 15)
     BODY_KEYS,  # hash table from a body's address …
     BODY_VALUES,  # … to its index

@@ -118,7 +118,8 @@ column_rows = _vector(at.COLUMN_ROWS, at.LOWER, _INTEGERS)
 fill_targets = _fixed(at.FILL_TARGETS, 1, _INTEGERS)
 diagonal = _matrix(at.DIAGONAL, at.MOVING, 9)
 lower = _matrix(at.LOWER_BLOCKS, at.LOWER, 9)
-scaled = _matrix(at.SCALED_BLOCKS, at.LOWER, 9)
+# Of as many rows as it takes, which the kernels do not need to know.
+column = _matrix(at.COLUMN, at.LOWER, 9)
 
 settings = _fixed(at.SETTINGS, at.SETTINGS_WORDS)
 ledger = _fixed(at.LEDGER, at.LEDGER_WORDS)

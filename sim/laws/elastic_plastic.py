@@ -47,31 +47,15 @@ def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
     r[0], r[1] = energy, work
 
 
-@dataclass(frozen=True)
-class ElasticPlastic:
-    """The law above.
-
-    Parameters
-    ----------
-    stiffness : (float, float, float)
-        Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness.
-    capacity : (float, float, float)
-        N_max [N], Q_max [N], M_max [N m].
-    """
+class Capped:
+    """What the laws have in common whose N, Q and M are capped one by one."""
 
     stiffness: tuple[float, float, float]
     capacity: tuple[float, float, float]
 
-    name = "elastic-plastic"
     yields_by = ("N", "Q", "M")
     respond_address = respond
     commit_address = commit
-
-    @classmethod
-    def of_section(cls, section: Capacity, length: float) -> ElasticPlastic:
-        """A joint that stands for ``length`` [m] of a member and bears what its section bears."""
-        stiffness = (section.EA / length, section.GA_s / length, section.EI / length)
-        return cls(stiffness, (section.N_max, section.Q_max, section.M_max))
 
     def capacities(self) -> tuple[float, float, float]:
         """N_max [N], Q_max [N] and M_max [N m]."""
@@ -89,3 +73,27 @@ class ElasticPlastic:
         """Upper triangle of ∂s/∂q while elastic, row by row."""
         k = self.stiffness
         return k[0], 0.0, 0.0, k[1], 0.0, k[2]
+
+
+@dataclass(frozen=True)
+class ElasticPlastic(Capped):
+    """The law above.
+
+    Parameters
+    ----------
+    stiffness : (float, float, float)
+        Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness.
+    capacity : (float, float, float)
+        N_max [N], Q_max [N], M_max [N m].
+    """
+
+    stiffness: tuple[float, float, float]
+    capacity: tuple[float, float, float]
+
+    name = "elastic-plastic"
+
+    @classmethod
+    def of_section(cls, section: Capacity, length: float) -> ElasticPlastic:
+        """A joint that stands for ``length`` [m] of a member and bears what its section bears."""
+        stiffness = (section.EA / length, section.GA_s / length, section.EI / length)
+        return cls(stiffness, (section.N_max, section.Q_max, section.M_max))

@@ -10,10 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from capacity import Capacity
-from sim.laws.elastic_plastic import commit, respond
+from sim.laws.elastic_plastic import Capped
 
 #: Extension, slip and rotation at which a joint yields [m, m, rad].
 INVISIBLE = (1e-5, 1e-5, 1e-4)
@@ -22,7 +20,7 @@ STIFFER = 10.0
 
 
 @dataclass(frozen=True)
-class RigidPlastic:
+class RigidPlastic(Capped):
     """The law above.
 
     Parameters
@@ -43,9 +41,6 @@ class RigidPlastic:
     stiffness: tuple[float, float, float] = (math.nan, math.nan, math.nan)
 
     name = "rigid-plastic"
-    yields_by = ("N", "Q", "M")
-    respond_address = respond
-    commit_address = commit
 
     def __post_init__(self) -> None:
         if not any(0.0 < cap < math.inf for cap in self.capacity) or min(self.capacity) < 0.0:
@@ -62,20 +57,3 @@ class RigidPlastic:
         elastic = (section.EA / length, section.GA_s / length, section.EI / length)
         N, Q, M = (max(k, STIFFER * e) for k, e in zip(law.stiffness, elastic, strict=True))
         return cls(law.capacity, (N, Q, M))
-
-    def capacities(self) -> tuple[float, float, float]:
-        """N_max [N], Q_max [N] and M_max [N m]."""
-        return self.capacity
-
-    def parameters(self) -> np.ndarray:
-        """Parameters as they lie in memory."""
-        return np.array([*self.stiffness, *self.capacity])
-
-    def state(self) -> np.ndarray:
-        """State of a new joint as it lies in memory."""
-        return np.zeros(3)
-
-    def elastic_tangent(self) -> tuple[float, float, float, float, float, float]:
-        """Upper triangle of ∂s/∂q while nothing yields, row by row."""
-        k = self.stiffness
-        return k[0], 0.0, 0.0, k[1], 0.0, k[2]

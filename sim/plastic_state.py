@@ -1,4 +1,8 @@
-"""What the state of a joint's law means, where another joint takes it over."""
+"""What the state of a joint's law means, where another joint takes it over.
+
+The state of a law is its plastic deformation, but for the fibre law, whose fibres have strains of their own. A new law
+for members whose state is something else has its say here.
+"""
 
 from __future__ import annotations
 

@@ -125,6 +125,13 @@ def hand_back(contact: int) -> None:
     words(contact, CONTACT_WORDS)[CONTACT_NORMAL_MASS] = 1.0
 
 
+def next_move(body: pymunk.Body) -> tuple[pymunk.Vec2d, float]:
+    """Velocity and spin by which a body is moved next: its own, and pseudo-velocities."""
+    raw = words(body_address(body), BODY_FULL_WORDS)
+    pushed = pymunk.Vec2d(float(raw[BIAS_VX]), float(raw[BIAS_VX + 1]))
+    return body.velocity + pushed, body.angular_velocity + float(raw[BIAS_SPIN])
+
+
 def save_body(body: pymunk.Body) -> np.ndarray:
     """A body's numbers to the last bit, with those that pymunk does not save: transform and pseudo-velocities."""
     raw = words(body_address(body), BODY_FULL_WORDS)

@@ -17,6 +17,8 @@ import pymunk
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from sim.chipmunk import next_move
+
 _MOST_ADVANCES = 60
 
 
@@ -68,7 +70,7 @@ def hold_back(touch: Touch, dt: float) -> None:
     left = dt - touch.time
     body = touch.body
     body.position -= pymunk.Vec2d(*touch.closing) * left
-    body.angle -= body.angular_velocity * left
+    body.angle -= next_move(body)[1] * left
 
 
 def pass_each_other(a: pymunk.Body, b: pymunk.Body) -> bool:
@@ -81,8 +83,9 @@ def _swept(shape: pymunk.Shape, dt: float) -> pymunk.BB:
     body = shape.body
     assert body is not None
     bb = shape.cache_bb()
-    dx, dy = body.velocity * dt
-    turn = abs(body.angular_velocity) * dt * _reach(shape)
+    velocity, spin = next_move(body)
+    dx, dy = velocity * dt
+    turn = abs(spin) * dt * _reach(shape)
     left, bottom = min(bb.left, bb.left + dx) - turn, min(bb.bottom, bb.bottom + dy) - turn
     return pymunk.BB(left, bottom, max(bb.right, bb.right + dx) + turn, max(bb.top, bb.top + dy) + turn)
 
@@ -105,8 +108,8 @@ def _first_touch(own: pymunk.Shape, other: pymunk.Shape, dt: float, slop: float)
     a, b = own.body, other.body
     assert a is not None
     assert b is not None
-    spin = abs(a.angular_velocity) * _reach(own) + abs(b.angular_velocity) * _reach(other)
-    approach = (a.velocity - b.velocity).length + spin
+    (velocity_a, spin_a), (velocity_b, spin_b) = next_move(a), next_move(b)
+    approach = (velocity_a - velocity_b).length + abs(spin_a) * _reach(own) + abs(spin_b) * _reach(other)
     if approach == 0.0:
         return None
     time = 0.0
@@ -128,8 +131,9 @@ def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[float
     assert a is not None
     assert b is not None
     here, there = shapely.get_coordinates(shapely.shortest_line(moved(own, time), moved(other, time)))
-    arm = pymunk.Vec2d(*there) - (b.local_to_world(b.center_of_gravity) + b.velocity * time)
-    velocity = a.velocity - b.velocity - b.angular_velocity * arm.perpendicular()
+    velocity_b, spin_b = next_move(b)
+    arm = pymunk.Vec2d(*there) - (b.local_to_world(b.center_of_gravity) + velocity_b * time)
+    velocity = next_move(a)[0] - velocity_b - spin_b * arm.perpendicular()
     normal = pymunk.Vec2d(*(there - here)).normalized()
     if normal == (0.0, 0.0):
         return velocity.x, velocity.y
@@ -147,8 +151,9 @@ def moved(shape: pymunk.Shape, time: float) -> BaseGeometry:
     """The shape, without its rounding, where its body will be in ``time``."""
     body = shape.body
     assert body is not None
-    centre = body.local_to_world(body.center_of_gravity) + body.velocity * time
-    angle = body.angle + body.angular_velocity * time
+    velocity, spin = next_move(body)
+    centre = body.local_to_world(body.center_of_gravity) + velocity * time
+    angle = body.angle + spin * time
     c, s = math.cos(angle), math.sin(angle)
 
     def world(point: pymunk.Vec2d) -> tuple[float, float]:

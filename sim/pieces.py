@@ -12,6 +12,7 @@ import numpy as np
 import pymunk
 
 from scene import Scene
+from sim.chipmunk import next_move
 from sim.rules import Rule
 from sim.shapes import add_box
 
@@ -56,8 +57,9 @@ class NodePoint:
         """Where it will be when Chipmunk has moved the body, first thing in the next step of ``dt`` [s], (2,) [m]."""
         body = self.body
         arm = pymunk.Vec2d(*self.point) - body.center_of_gravity
-        centre = body.local_to_world(body.center_of_gravity) + dt * body.velocity
-        return np.array(centre + arm.rotated(body.angle + dt * body.angular_velocity))
+        velocity, spin = next_move(body)
+        centre = body.local_to_world(body.center_of_gravity) + dt * velocity
+        return np.array(centre + arm.rotated(body.angle + dt * spin))
 
 
 class Pieces:

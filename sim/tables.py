@@ -56,7 +56,7 @@ class Tables:
         settings[at.TOLERANCE] = tolerance**2
         keys, values = hash_table([chipmunk.body_address(body) for body in bodies])
         per_joint = (at.DEFORMATION, at.LIGHTNESS, at.IMPULSE, at.RESIDUAL, at.SLOPE)
-        velocities = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION)
+        velocities = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION, at.BEGUN_AT)
         per_body = (*velocities, at.EXTERNAL, at.CONTACT_IMPULSE, at.SOLUTION)
         self._arrays: dict[int, np.ndarray] = {}
         #: The control table.

@@ -20,7 +20,7 @@ import numpy as np
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.energy import work_of_shifts, work_on_held
-from sim.kernels.kinematics import rates
+from sim.kernels.kinematics import lag_of, rates
 from sim.kernels.layout import (
     BETA,
     COMMIT_WORDS,
@@ -213,7 +213,7 @@ def half_a_step_on(t, k, x0, y0, z0, x, y, z, flow):  # type: ignore[no-untyped-
     """
     damping, settings, response, stiffness = views.damping(t), views.settings(t), views.response(t), views.stiffness(t)
     h, s, stiff = settings[STEP], response[k], stiffness[k]
-    lag, lead = h * settings[BETA], 0.5 * h - reach_of(t)
+    lag, lead = lag_of(settings), 0.5 * h - reach_of(t)
     u, v, turn = lag * x0 + lead * x - flow[0], lag * y0 + lead * y - flow[1], lag * z0 + lead * z - flow[2]
     linear = (s[0] - damping[k, 0] * x) * u + (s[1] - damping[k, 1] * y) * v + (s[2] - damping[k, 2] * z) * turn
     square = stiff[0] * u * u + stiff[3] * v * v + stiff[5] * turn * turn

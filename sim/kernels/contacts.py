@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 
 from sim.chipmunk import (
+    ANGLE,
     ARBITER_BODY_A,
     ARBITER_BODY_B,
     ARBITER_CONTACTS,
@@ -64,11 +65,16 @@ from sim.kernels.layout import (
     ARM_B,
     BODY_A,
     BODY_B,
+    BOUNCE,
     CACHED,
+    EARLIER,
     FRICTION,
+    GAP,
     HASH,
     INDEX_A,
     INDEX_B,
+    LOOSE_AT,
+    LOOSE_START,
     NORMAL,
     OTHER_START,
     OWNER_A,
@@ -84,7 +90,7 @@ from sim.memory import floats, integers
 # be found again a step of free motion later. So a pressed contact keeps this many times that distance of overlap,
 # within what the space allows, and comes this share of the way to it in a step.
 _KEPT = 8.0
-_SETTLE = 0.5
+SETTLE = 0.5
 
 
 @njit(error_model="numpy")
@@ -179,13 +185,16 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 touch[FRICTION] = f[ARBITER_FRICTION]
                 touch[SURFACE] = -ny * f[ARBITER_SURFACE] + nx * f[ARBITER_SURFACE + 1]
                 touch[WANTED] = -contact[CONTACT_BOUNCE]
-                spare = min(slop, _KEPT * parting(w, contact, h)) + overlap_less(w, contact, nx, ny)
+                touch[BOUNCE], touch[GAP] = touch[WANTED], distance(p, touch)
+                spare = min(slop, kept(p, touch, h)) + touch[GAP]
                 if touch[WANTED] == 0.0 and spare > 0.0:
-                    touch[WANTED] = -_SETTLE * spare / h
+                    touch[WANTED] = -SETTLE * spare / h
                 touch[PUSH] = contact[CONTACT_BIAS]
                 if w[ARBITER_STATE] & 0xFFFFFFFF == FIRST:
                     contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = 0.0, 0.0
                 touch[CACHED], touch[CACHED + 1] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE]
+                touch[EARLIER], touch[EARLIER + 1] = 0.0, 0.0
+                load_loose(touch, floats(other, BODY_WORDS))
                 for row in range(2):
                     touch[OTHER_START + row] = other_velocity(c, p, touch, row)
                 contact[CONTACT_NORMAL_MASS] = 0.0
@@ -196,22 +205,28 @@ def collect(c, t):  # type: ignore[no-untyped-def]
     t[at.CONTACTS], t[at.MISSED] = count, missed
 
 
-@njit(inline="always", error_model="numpy")
-def overlap_less(arbiter, contact, nx, ny):  # type: ignore[no-untyped-def]
+@njit(error_model="numpy")
+def load_loose(touch, b):  # type: ignore[no-untyped-def]
+    """Note how and where the other body of a contact is."""
+    touch[LOOSE_START], touch[LOOSE_START + 1], touch[LOOSE_START + 2] = b[VX], b[VX + 1], b[SPIN]
+    touch[LOOSE_AT], touch[LOOSE_AT + 1], touch[LOOSE_AT + 2] = b[X], b[X + 1], b[ANGLE]
+
+
+@njit(error_model="numpy")
+def distance(place, touch):  # type: ignore[no-untyped-def]
     """Distance of the two surfaces at a contact, negative where they overlap [m]."""
-    a, b = floats(arbiter[ARBITER_BODY_A], BODY_WORDS), floats(arbiter[ARBITER_BODY_B], BODY_WORDS)
-    x = b[X] + contact[CONTACT_R2] - a[X] - contact[CONTACT_R1]
-    y = b[X + 1] + contact[CONTACT_R2 + 1] - a[X + 1] - contact[CONTACT_R1 + 1]
-    return nx * x + ny * y
+    a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
+    x = b[X] + touch[ARM_B] - a[X] - touch[ARM_A]
+    y = b[X + 1] + touch[ARM_B + 1] - a[X + 1] - touch[ARM_A + 1]
+    return touch[NORMAL] * x + touch[NORMAL + 1] * y
 
 
-@njit(inline="always", error_model="numpy")
-def parting(arbiter, contact, h):  # type: ignore[no-untyped-def]
-    """How far the surfaces at a contact come apart in a step by turning alone, ½ r (ω h)² of both bodies [m]."""
-    a, b = floats(arbiter[ARBITER_BODY_A], BODY_WORDS), floats(arbiter[ARBITER_BODY_B], BODY_WORDS)
-    ra = math.hypot(contact[CONTACT_R1], contact[CONTACT_R1 + 1])
-    rb = math.hypot(contact[CONTACT_R2], contact[CONTACT_R2 + 1])
-    return 0.5 * (ra * (a[SPIN] * h) ** 2 + rb * (b[SPIN] * h) ** 2)
+@njit(error_model="numpy")
+def kept(place, touch, h):  # type: ignore[no-untyped-def]
+    """Overlap that a pressed contact keeps: some times ½ r (ω h)² of both bodies, by which turning parts them [m]."""
+    a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
+    ra, rb = math.hypot(touch[ARM_A], touch[ARM_A + 1]), math.hypot(touch[ARM_B], touch[ARM_B + 1])
+    return 0.5 * _KEPT * (ra * (a[SPIN] * h) ** 2 + rb * (b[SPIN] * h) ** 2)
 
 
 @njit(error_model="numpy")
@@ -246,7 +261,7 @@ def comes_before(p, q):  # type: ignore[no-untyped-def]
     return p[HASH] < q[HASH]
 
 
-@njit(inline="always", error_model="numpy")
+@njit(error_model="numpy")
 def direction(touch, row):  # type: ignore[no-untyped-def]
     """Unit vector of a row (even: normal, odd: tangent) and its moments about a and b."""
     dx, dy = touch[NORMAL], touch[NORMAL + 1]

@@ -45,8 +45,8 @@ from sim.kernels.layout import (
     OTHER_START,
     SPREAD_IMPULSE,
     STEP,
-    STEP_RATIO,
     WHERE,
+    WHOLE_RATIO,
 )
 from sim.memory import floats, kernel
 
@@ -114,7 +114,7 @@ def close(c, t):  # type: ignore[no-untyped-def]
 @kernel
 def contacts(c, t, start, end):  # type: ignore[no-untyped-def]
     """The contacts that a structure solved as its own: work that other bodies did on it, and how much arrived."""
-    places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[STEP_RATIO]
+    places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[WHOLE_RATIO]
     given, arrived = 0.0, 0.0
     for k in range(t[at.CONTACTS]):
         place, touch = places[k], touches[k]

@@ -55,6 +55,12 @@ def leave_out(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def lag_of(settings):  # type: ignore[no-untyped-def]
+    """How far q* lags behind the old velocities: β times the last step, which they moved the bodies by [s]."""
+    return settings[at.BETA] * settings[at.STEP] / settings[at.STEP_RATIO]
+
+
+@kernel
 def prepare(t):  # type: ignore[no-untyped-def]
     """Deformation and gradient at the bodies' present positions; joints that do not hold get none.
 
@@ -64,7 +70,7 @@ def prepare(t):  # type: ignore[no-untyped-def]
     geometry, gradient, stiffness = views.geometry(t), views.gradient(t), views.stiffness(t)
     deformation, lightness = views.per_joint(t, at.DEFORMATION), views.per_joint(t, at.LIGHTNESS)
     settings, weight, last = views.settings(t), views.weight(t), views.per_body(t, at.LAST_VELOCITY)
-    moving, lag, rounding = t[at.MOVING], settings[at.BETA] * settings[at.STEP], 0.0
+    moving, lag, rounding = t[at.MOVING], lag_of(settings), 0.0
     for k in range(t[at.JOINTS]):
         if active[k] == 0:
             for i in range(at.GRADIENT_WORDS):

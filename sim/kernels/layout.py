@@ -24,7 +24,9 @@ FLOWING = 24
 # In this step: whether a body was moved by anything but its velocity; whether a body turns with added inertia, and
 # whether nothing holds the structure.
 SHIFTED, TURNING, FREE = 21, 22, 23
-_FIRST_ADDRESS = 25
+# In how many parts the step is taken, and whether loose bodies have been moved ahead with them, see `parts`.
+PARTS, AHEAD = 25, 26
+_FIRST_ADDRESS = 27
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -70,15 +72,18 @@ _FIRST_ADDRESS = 25
     TOUCHES,  # (room, 15)
     PATTERN,  # (bodies, 3): forces of the load pattern for a load factor of 1
     IMAGE,  # (bodies, 3): H⁻¹ of it
-) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 44)
-CONTROL_WORDS = _FIRST_ADDRESS + 44
+    BEGUN_AT,  # (bodies, 3): positions at the start of a step that is taken in parts
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 45)
+CONTROL_WORDS = _FIRST_ADDRESS + 45
 
 # Settings (float64); the spread ones are those of the load pattern's spring, see `spread`; BETA and DELTA of a step are
 # chosen from the wanted ones.
 STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL, STEP_RATIO, ROUNDING = 0, 1, 2, 3, 4, 5, 6
 SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 7, 8, 9
 WANTED_BETA, WANTED_DELTA = 10, 11
-SETTINGS_WORDS = 12
+# Chipmunk's step, of which `STEP` may be a part, and over the last one; energy of a blow that lasts, see `blow`.
+WHOLE_STEP, WHOLE_RATIO, BLOW = 12, 13, 14
+SETTINGS_WORDS = 15
 
 # Ledger [J], see `energy`: running totals, the present kinetic and elastic energy, plastic work that is to be booked in
 # the next step, and such that nothing has paid for yet.
@@ -124,7 +129,10 @@ RESULT_WORDS = 15
 WHERE, HASH, OWNER_A, INDEX_A, BODY_A, OWNER_B, INDEX_B, BODY_B = range(8)
 PLACE_WORDS = 8
 # A contact in `touches`: normal, arms, friction, surface velocity along the tangent, wanted normal velocity, bias,
-# cached impulses, velocities of the other side's point at the step's start (normal, tangent), which side is other (±1).
+# cached impulses, velocities of the other side's point at the step's start (normal, tangent); velocity x, y and spin of
+# the loose body at the step's start, distance of the surfaces, impulses of the step's earlier parts, wanted velocity by
+# restitution alone, speed with which bodies struck each other in this contact, position x, y and angle of the
+# loose body at the step's start.
 NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
-CACHED, OTHER_START, OTHER_SIDE = 10, 12, 14
-TOUCH_WORDS = 15
+CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE, LOOSE_AT = 10, 12, 14, 17, 18, 20, 21, 22
+TOUCH_WORDS = 25

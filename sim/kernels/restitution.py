@@ -16,7 +16,7 @@ from sim.kernels import views
 from sim.kernels.contacts import other_velocity, own_velocity
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.kinematics import rates
-from sim.kernels.layout import BETA, CACHED, OTHER_START, OWNER_A, OWNER_B, STEP, STEP_RATIO, TANGENT, WANTED, WHERE
+from sim.kernels.layout import BETA, CACHED, OTHER_START, OWNER_A, OWNER_B, STEP, TANGENT, WANTED, WHERE, WHOLE_RATIO
 from sim.memory import floats, kernel
 
 #: Times that a bounce is halved before none is asked for.
@@ -45,7 +45,7 @@ def creates_energy(head):  # type: ignore[no-untyped-def]
         t = views.control(c)
         spent += spent_by(t)
         velocity, places, touches = views.per_body(t, at.VELOCITY), views.places(t), views.touches(t)
-        ratio = views.settings(t)[STEP_RATIO]
+        ratio = views.settings(t)[WHOLE_RATIO]
         for k in range(t[at.CONTACTS]):
             place, touch = places[k], touches[k]
             contact = floats(place[WHERE], CONTACT_WORDS)

@@ -1,0 +1,478 @@
+"""A step taken in parts, inside the one step that Chipmunk takes.
+
+When it comes to the structures, Chipmunk has moved all bodies and found the contacts. Of the step's n parts, all but
+the last are taken at once then, each a step of its own: forces from outside act with an n-th of their impulse, joints
+and contacts are solved, laws and ledger take over what was found, and the structures' bodies are moved, together with
+the loose ones that touch them. The last part is what Chipmunk's iterations then work on. In the end the bodies are put
+back, and a pseudo-velocity makes Chipmunk's next move, which is one of a whole step, end where the last part does.
+
+Which surfaces meet, and in which direction, stays as Chipmunk found it; their distance g is followed, and a contact may
+close it in a part of length h but not pass it, v_n ≥ - g / h.
+
+A blow is noticed once bodies overlap. All are put back to where they were when they touched, τ ago, and the parts are
+those of h + τ. Chipmunk's velocities belong to half a step before their time, as energies go (n g h of a body that fell
+for n steps, where √(n (n + 1)) g h belongs to its way), so what falls is given what outer forces do in ½ h - τ.
+"""
+
+import numpy as np
+
+from sim.chipmunk import (
+    ANGLE,
+    BIAS_SPIN,
+    BIAS_VX,
+    BODY_FULL_WORDS,
+    BODY_SPACE,
+    BODY_WORDS,
+    CONTACT_NORMAL_IMPULSE,
+    CONTACT_TANGENT_IMPULSE,
+    CONTACT_WORDS,
+    MASS_INVERSE,
+    SPACE_SLOP,
+    SPACE_WORDS,
+    SPIN,
+    VX,
+    X,
+)
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.blow import OVER, elastic_energy, flows, forget
+from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities, write
+from sim.kernels.commit import commit
+from sim.kernels.complement import relative
+from sim.kernels.contacts import SETTLE, kept, other_velocity, own_velocity, push_loose
+from sim.kernels.energy import close
+from sim.kernels.guard import close_from_below
+from sim.kernels.inertia import mass_of, moment_of, weigh
+from sim.kernels.kinematics import leave_out, prepare
+from sim.kernels.layout import (
+    BLOW,
+    BODY_A,
+    BODY_B,
+    BOUNCE,
+    CACHED,
+    EARLIER,
+    GAP,
+    INERTIA_I,
+    INERTIA_M,
+    INVERSE_I,
+    INVERSE_M,
+    LEDGER_CONTACT,
+    LEDGER_NUMERICAL,
+    LEDGER_PLASTIC,
+    LOOSE_AT,
+    LOOSE_START,
+    OTHER_START,
+    OWNER_A,
+    OWNER_B,
+    PUSH,
+    STEP,
+    STEP_RATIO,
+    STRIKE,
+    WANTED,
+    WHERE,
+    WHOLE_RATIO,
+    WHOLE_STEP,
+)
+from sim.kernels.newton import restart
+from sim.kernels.settle import finite, settle_bounces
+from sim.memory import clear, floats, integers, kernel
+
+
+@kernel
+def renew(t):  # type: ignore[no-untyped-def]
+    """Weights, deformations and gradients where the bodies are now, and the velocities there."""
+    weigh(t)
+    prepare(t)
+    load_start(t)
+
+
+@kernel
+def load_start(t):  # type: ignore[no-untyped-def]
+    """The solver's velocities: those at the start of the step, or of its part."""
+    start, velocity = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.VELOCITY)
+    body_at, weight = views.body_at(t), views.weight(t)
+    for i in range(t[at.BODIES]):
+        for axis in range(3):
+            velocity[i, axis] = start[i, axis]
+    for i in range(t[at.MOVING]):
+        velocity[i, 2] *= moment_of(floats(body_at[i], BODY_WORDS)) / weight[i, INERTIA_I]
+
+
+@kernel
+def conclude(c, t):  # type: ignore[no-untyped-def]
+    """Let laws and ledger take over what was found; counts the joints that broke."""
+    ledger = views.ledger(t)
+    contact, plastic, numerical = ledger[LEDGER_CONTACT], ledger[LEDGER_PLASTIC], ledger[LEDGER_NUMERICAL]
+    t[at.BROKE] += commit(t)
+    close(c, t)
+    close_from_below(t, contact, plastic, numerical)
+    load_velocities(t, views.per_body(t, at.LAST_VELOCITY))
+
+
+@kernel
+def take_parts(head, parts, touching):  # type: ignore[no-untyped-def]
+    """Take all parts of a step but the last one, and begin that; whether all of them converged."""
+    others = others_of(head)
+    pushes = release(head, others)
+    late = lateness(head)
+    go_back(head, others, pushes, late)
+    scale_all(pushes, open_step(head, late, parts))
+    before, lost, converged = np.empty((len(others), 3)), 0.0, True
+    stored, flowed = elastic_energy(head), False
+    for _ in range(parts - 1):
+        load_others(others, before)
+        begin_part(head, others, pushes)
+        c = head
+        while c != 0:
+            restart(views.control(c))
+            c = views.control(c)[at.NEXT]
+        converged = settle_bounces(head, True, touching) and converged
+        c = head
+        while c != 0:
+            t = views.control(c)
+            if t[at.FAULT] >= 0 or not finite(t):
+                return converged
+            c = t[at.NEXT]
+        lost += end_part(head, others, before, pushes)
+        flowed = flowed or flows(head)
+    settings = views.settings(views.control(head))
+    worth = OVER * settings[WHOLE_STEP] * settings[BLOW]
+    if parts * lost < worth or not (flowed or elastic_energy(head) > stored):
+        forget(head)
+    begin_part(head, others, pushes)
+    c = head
+    while c != 0:
+        views.control(c)[at.PUSHED_APART] = 0
+        c = views.control(c)[at.NEXT]
+    return converged
+
+
+@kernel
+def load_others(others, out):  # type: ignore[no-untyped-def]
+    """Velocities of the others."""
+    for i in range(len(others)):
+        b = floats(others[i], BODY_WORDS)
+        out[i, 0], out[i, 1], out[i, 2] = b[VX], b[VX + 1], b[SPIN]
+
+
+@kernel
+def others_of(head):  # type: ignore[no-untyped-def]
+    """Addresses of the bodies that move with a group's but are not solved with it: loose ones, and moving held ones."""
+    room, c = 0, head
+    while c != 0:
+        t = views.control(c)
+        room += t[at.CONTACTS] + t[at.BODIES] - t[at.MOVING]
+        c = t[at.NEXT]
+    found, count, c = np.empty(room, np.int64), 0, head
+    while c != 0:
+        t = views.control(c)
+        places, body_at = views.places(t), views.body_at(t)
+        for k in range(t[at.CONTACTS]):
+            for side in range(2):
+                owner, body = (
+                    (places[k, OWNER_A], places[k, BODY_A]) if side == 0 else (places[k, OWNER_B], places[k, BODY_B])
+                )
+                if owner == 0:
+                    count = note(found, count, body)
+        for i in range(t[at.MOVING], t[at.BODIES]):
+            count = note(found, count, body_at[i])
+        c = t[at.NEXT]
+    return found[:count]
+
+
+@kernel
+def note(found, count, body):  # type: ignore[no-untyped-def]
+    """Add a body that moves to those found, once; returns how many there are."""
+    b = floats(body, BODY_WORDS)
+    if b[MASS_INVERSE] == 0.0 and b[VX] == 0.0 and b[VX + 1] == 0.0 and b[SPIN] == 0.0:
+        return count
+    for i in range(count):
+        if found[i] == body:
+            return count
+    found[count] = body
+    return count + 1
+
+
+@kernel
+def release(head, others):  # type: ignore[no-untyped-def]
+    """Take back what was done to the others so far; returns how forces from outside change their velocities."""
+    pushes, c = np.zeros((len(others), 3)), head
+    while c != 0:
+        t = views.control(c)
+        places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[WHOLE_RATIO]
+        for k in range(t[at.CONTACTS]):
+            for row in range(2):
+                push_loose(places[k], touches[k], row, -ratio * touches[k, CACHED + row], VX, SPIN)
+        c = t[at.NEXT]
+    c = head
+    while c != 0:
+        t = views.control(c)
+        places, touches = views.places(t), views.touches(t)
+        for k in range(t[at.CONTACTS]):
+            i = which(others, places[k])
+            if i >= 0:
+                b = floats(others[i], BODY_WORDS)
+                for axis in range(3):
+                    at_start = touches[k, LOOSE_START + axis]
+                    word = SPIN if axis == 2 else VX + axis
+                    if b[word] != at_start:
+                        pushes[i, axis] = b[word] - at_start
+                        b[word] = at_start
+        c = t[at.NEXT]
+    return pushes
+
+
+@kernel
+def which(others, place):  # type: ignore[no-untyped-def]
+    """Where the loose body of a contact is among the others, or -1."""
+    for i in range(len(others)):
+        if (place[OWNER_A] == 0 and place[BODY_A] == others[i]) or (place[OWNER_B] == 0 and place[BODY_B] == others[i]):
+            return i
+    return -1
+
+
+@kernel
+def lateness(head):  # type: ignore[no-untyped-def]
+    """How long ago those that strike have touched, at most the last step [s]."""
+    late, c = 0.0, head
+    while c != 0:
+        t = views.control(c)
+        touches, settings = views.touches(t), views.settings(t)
+        for k in range(t[at.CONTACTS]):
+            if touches[k, STRIKE] > 0.0:
+                late = max(late, -touches[k, GAP] / touches[k, STRIKE])
+        late = min(late, settings[STEP] / settings[STEP_RATIO])
+        c = t[at.NEXT]
+    return late
+
+
+@kernel
+def open_step(head, late, parts):  # type: ignore[no-untyped-def]
+    """Make steps of the parts, over what remains of the last step, too; nothing has been applied yet.
+
+    Returns the share of a part in a step.
+    """
+    share, c = 1.0, head
+    while c != 0:
+        t = views.control(c)
+        settings, touches = views.settings(t), views.touches(t)
+        h, old = settings[STEP], settings[STEP] / settings[STEP_RATIO]
+        share = (h + late) / (h * parts)
+        settings[STEP] = share * h
+        settings[STEP_RATIO] = share * h / max(old - late, share * h)
+        t[at.PARTS], t[at.AHEAD], t[at.PUSHED_APART] = parts, 1, 1
+        scale_all(views.per_joint(t, at.IMPULSE), share)
+        scale_all(views.per_body(t, at.EXTERNAL), share)
+        clear(views.per_body(t, at.CONTACT_IMPULSE))
+        for k in range(t[at.CONTACTS]):
+            touches[k, CACHED], touches[k, CACHED + 1] = 0.0, 0.0
+            if touches[k, STRIKE] > 0.0:
+                touches[k, PUSH] = 0.0
+        store_velocities(t, views.per_body(t, at.START_VELOCITY))
+        renew(t)
+        c = t[at.NEXT]
+    return share
+
+
+@kernel
+def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
+    """Put a group and what is with it back to where it was when those that strike touched, with the velocities then.
+
+    What something holds keeps its velocities: there forces from outside are borne, and give none.
+    """
+    for i in range(len(others)):
+        b = floats(others[i], BODY_WORDS)
+        move(others[i], -late * b[VX], -late * b[VX + 1], -late * b[SPIN])
+    c = head
+    share = 0.5 - late / views.settings(views.control(head))[WHOLE_STEP]
+    while c != 0:
+        t = views.control(c)
+        places, touches, struck = views.places(t), views.touches(t), False
+        start, shift, body_at = views.per_body(t, at.START_VELOCITY), views.shift(t), views.body_at(t)
+        external, weight = views.per_body(t, at.EXTERNAL), views.weight(t)
+        for k in range(t[at.CONTACTS]):
+            touches[k, GAP] -= late * (touches[k, OTHER_START] + own_velocity(c, places[k], touches[k], 0, start))
+            i = which(others, places[k])
+            if touches[k, STRIKE] > 0.0:
+                struck = True
+                if i >= 0:
+                    b = floats(others[i], BODY_WORDS)
+                    b[VX] = touches[k, LOOSE_START] + share * pushes[i, 0]
+                    b[VX + 1] = touches[k, LOOSE_START + 1] + share * pushes[i, 1]
+                    b[SPIN] = touches[k, LOOSE_START + 2] + share * pushes[i, 2]
+        load_positions(t, views.per_body(t, at.BEGUN_AT))
+        for i in range(t[at.MOVING]):
+            move(body_at[i], -late * start[i, 0], -late * start[i, 1], -late * start[i, 2])
+        for i in range(t[at.BODIES]):
+            for axis in range(3):
+                shift[i, axis] -= late * start[i, axis]
+        t[at.SHIFTED] = 1
+        if struck and t[at.FREE] == 1:
+            for i in range(t[at.MOVING]):
+                start[i, 0] += share * external[i, 0] * weight[i, INVERSE_M]
+                start[i, 1] += share * external[i, 1] * weight[i, INVERSE_M]
+                start[i, 2] += share * external[i, 2] / moment_of(floats(body_at[i], BODY_WORDS))
+        c = t[at.NEXT]
+
+
+@kernel
+def scale_all(array, factor):  # type: ignore[no-untyped-def]
+    """Multiply all of a two-dimensional array."""
+    for i in range(array.shape[0]):
+        for k in range(array.shape[1]):
+            array[i, k] *= factor
+
+
+@kernel
+def begin_part(head, others, pushes):  # type: ignore[no-untyped-def]
+    """Forces from outside act; contacts start afresh, and may close the distance that there is."""
+    c = head
+    while c != 0:
+        t = views.control(c)
+        external, velocity, weight = views.per_body(t, at.EXTERNAL), views.per_body(t, at.VELOCITY), views.weight(t)
+        places, touches, settings = views.places(t), views.touches(t), views.settings(t)
+        body_at = views.body_at(t)
+        slop = floats(integers(body_at[0], BODY_FULL_WORDS)[BODY_SPACE], SPACE_WORDS)[SPACE_SLOP]
+        for i in range(t[at.MOVING]):
+            velocity[i, 0] += external[i, 0] * weight[i, INVERSE_M]
+            velocity[i, 1] += external[i, 1] * weight[i, INVERSE_M]
+            velocity[i, 2] += external[i, 2] * weight[i, INVERSE_I]
+        for k in range(t[at.CONTACTS]):
+            place, touch = places[k], touches[k]
+            contact = floats(place[WHERE], CONTACT_WORDS)
+            contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = 0.0, 0.0
+            for row in range(2):
+                touch[OTHER_START + row] = other_velocity(c, place, touch, row)
+            keep = min(slop, kept(place, touch, settings[WHOLE_STEP]))
+            slowly = max(min(touch[GAP] + keep, keep), 0.0) / (SETTLE * settings[WHOLE_STEP])
+            closing = max(touch[GAP], 0.0) / settings[STEP] + slowly
+            touch[WANTED] = touch[BOUNCE] if touch[BOUNCE] > 0.0 else -closing
+            touch[BOUNCE] = 0.0
+        c = t[at.NEXT]
+    for i in range(len(others)):
+        b = floats(others[i], BODY_WORDS)
+        b[VX] += pushes[i, 0]
+        b[VX + 1] += pushes[i, 1]
+        b[SPIN] += pushes[i, 2]
+
+
+@kernel
+def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
+    """Take over what a part has found, and go on to where the bodies are at its end; returns its `loss`."""
+    c = head
+    while c != 0:
+        t = views.control(c)
+        write(t)
+        c = t[at.NEXT]
+    h = views.settings(views.control(head))[STEP]
+    lost = loss(head, others, before, pushes)
+    c = head
+    while c != 0:
+        t = views.control(c)
+        places, touches = views.places(t), views.touches(t)
+        conclude(c, t)
+        for k in range(t[at.CONTACTS]):
+            contact = floats(places[k, WHERE], CONTACT_WORDS)
+            touches[k, EARLIER] += contact[CONTACT_NORMAL_IMPULSE]
+            touches[k, EARLIER + 1] += contact[CONTACT_TANGENT_IMPULSE]
+            touches[k, GAP] += h * relative(places[k], touches[k], 0)
+        c = t[at.NEXT]
+    for i in range(len(others)):
+        b = floats(others[i], BODY_WORDS)
+        move(others[i], h * b[VX], h * b[VX + 1], h * b[SPIN])
+    c = head
+    while c != 0:
+        t = views.control(c)
+        body_at, last, start = (
+            views.body_at(t),
+            views.per_body(t, at.LAST_VELOCITY),
+            views.per_body(t, at.START_VELOCITY),
+        )
+        active, impulse, scale = views.active(t), views.per_joint(t, at.IMPULSE), views.scale(t)
+        for i in range(t[at.MOVING]):
+            move(body_at[i], h * last[i, 0], h * last[i, 1], h * last[i, 2])
+        for i in range(t[at.BODIES]):
+            for axis in range(3):
+                start[i, axis] = last[i, axis]
+        for k in range(t[at.JOINTS]):
+            for axis in range(3):
+                impulse[k, axis] *= active[k]
+            scale[k] = 1.0
+        clear(views.per_body(t, at.CONTACT_IMPULSE))
+        views.settings(t)[STEP_RATIO] = 1.0
+        t[at.SHIFTED] = 0
+        t[at.FREE] = 0 if leave_out(t) else 1
+        renew(t)
+        c = t[at.NEXT]
+    return lost
+
+
+@kernel
+def loss(head, others, before, pushes):  # type: ignore[no-untyped-def]
+    """What the time integration takes from the bodies in a part, ½ Δv·M Δv [J]; loose bodies may fall freely."""
+    lost, c = 0.0, head
+    while c != 0:
+        t = views.control(c)
+        start, end, weight = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.WRITTEN), views.weight(t)
+        for i in range(t[at.MOVING]):
+            x, y, w = end[i, 0] - start[i, 0], end[i, 1] - start[i, 1], end[i, 2] - start[i, 2]
+            lost += 0.5 * (weight[i, INERTIA_M] * (x * x + y * y) + weight[i, INERTIA_I] * w * w)
+        c = t[at.NEXT]
+    for i in range(len(others)):
+        b = floats(others[i], BODY_WORDS)
+        if b[MASS_INVERSE] > 0.0:
+            x, y = b[VX] - before[i, 0] - pushes[i, 0], b[VX + 1] - before[i, 1] - pushes[i, 1]
+            w = b[SPIN] - before[i, 2] - pushes[i, 2]
+            lost += 0.5 * (mass_of(b) * (x * x + y * y) + moment_of(b) * w * w)
+    return lost
+
+
+@kernel
+def close_step(head, t):  # type: ignore[no-untyped-def]
+    """Put bodies back to where Chipmunk had moved them, and give contacts the impulses of all parts.
+
+    Chipmunk's next move goes from there, with the velocities of the last part and a pseudo-velocity beside them.
+    """
+    h, whole = views.settings(t)[STEP], views.settings(t)[WHOLE_STEP]
+    if t[at.AHEAD] == 1:
+        others, c = others_of(head), head
+        while c != 0:
+            one = views.control(c)
+            places, touches = views.places(one), views.touches(one)
+            for k in range(one[at.CONTACTS]):
+                i = which(others, places[k])
+                if i >= 0:
+                    put_back(others[i], touches[k, LOOSE_AT : LOOSE_AT + 3], h, whole)
+                    others[i] = 0
+            one[at.AHEAD] = 0
+            c = one[at.NEXT]
+        for i in range(len(others)):
+            if others[i] != 0:
+                # Held, and moved evenly.
+                b, ahead = floats(others[i], BODY_WORDS), whole - h
+                move(others[i], -ahead * b[VX], -ahead * b[VX + 1], -ahead * b[SPIN])
+    if t[at.FAULT] < 0:
+        # What the next step is to find where it was: at the place from which plain velocities would have led there.
+        body_at, begun, position = views.body_at(t), views.per_body(t, at.BEGUN_AT), views.per_body(t, at.LAST_POSITION)
+        for i in range(t[at.MOVING]):
+            b = floats(body_at[i], BODY_WORDS)
+            put_back(body_at[i], begun[i], h, whole)
+            position[i, 0] += (h - whole) * b[VX]
+            position[i, 1] += (h - whole) * b[VX + 1]
+            position[i, 2] += (h - whole) * b[SPIN]
+    places, touches = views.places(t), views.touches(t)
+    for k in range(t[at.CONTACTS]):
+        contact = floats(places[k, WHERE], CONTACT_WORDS)
+        contact[CONTACT_NORMAL_IMPULSE] += touches[k, EARLIER]
+        contact[CONTACT_TANGENT_IMPULSE] += touches[k, EARLIER + 1]
+
+
+@kernel
+def put_back(body, place, h, whole):  # type: ignore[no-untyped-def]
+    """Put a body back to ``place``, from where the next ``whole`` step moves it to what is a part ``h`` from here."""
+    b = floats(body, BODY_FULL_WORDS)
+    x, y, turn = b[X] - place[0], b[X + 1] - place[1], b[ANGLE] - place[2]
+    move(body, -x, -y, -turn)
+    b[BIAS_VX] += (x + h * b[VX]) / whole - b[VX]
+    b[BIAS_VX + 1] += (y + h * b[VX + 1]) / whole - b[VX + 1]
+    b[BIAS_SPIN] += (turn + h * b[SPIN]) / whole - b[SPIN]

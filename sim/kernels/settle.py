@@ -1,0 +1,94 @@
+"""Joints, breaking and contacts of a group of structures, in turn until they agree."""
+
+import math
+
+import numpy as np
+
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.commit import weaken
+from sim.kernels.complement import NOT_FINITE, gather_contacts, sum_up, touch
+from sim.kernels.layout import CACHED
+from sim.kernels.newton import iterate
+from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
+from sim.memory import kernel
+
+_MOST_ROUNDS = 40
+_SETTLED = 1e-6
+
+
+@kernel
+def settle(c, fresh, touching):  # type: ignore[no-untyped-def]
+    """Solve joints, breaking and contacts in turn until they agree; whether they do."""
+    predicting, untouched = fresh, True
+    for _ in range(_MOST_ROUNDS):
+        change, taken, converged = 0.0, 0, True
+        member = c
+        while member != 0:
+            t = views.control(member)
+            steps, done, views.settings(t)[at.LAST_RESIDUAL] = iterate(t, predicting)
+            t[at.NEWTON_STEPS] += steps
+            taken, converged = taken + steps, converged and done
+            if t[at.BREAKABLE] == 1:
+                change = max(change, weaken(t))
+            member = t[at.NEXT]
+        predicting = False
+        # Contacts are exact for the tangents they were solved with: once the joints agree, nothing is left to do.
+        if touching and (taken > 0 or untouched):
+            untouched = False
+            moved = touch(c)
+            if moved == NOT_FINITE:
+                views.control(c)[at.FAULT] = 0
+                return True
+            change = max(change, moved)
+        if change <= _SETTLED:
+            return converged
+    return False
+
+
+@kernel
+def settle_bounces(c, fresh, touching):  # type: ignore[no-untyped-def]
+    """Settle a group, with no bounce that would create energy; whether it converged."""
+    converged = settle(c, fresh, touching)
+    if touching and bounces(c):
+        for k in range(MOST_HALVINGS):
+            if views.control(c)[at.FAULT] >= 0 or not creates_energy(c):
+                break
+            bounce_less(c, 0.5 if k < MOST_HALVINGS - 1 else 0.0)
+            converged = settle(c, False, True)
+    return converged
+
+
+@kernel
+def book_cached(c):  # type: ignore[no-untyped-def]
+    """Chipmunk has applied the contacts' cached impulses to the bodies: they did not come from outside."""
+    places, touches = gather_contacts(c)
+    amounts = np.empty(2 * len(places))
+    ratio = views.settings(views.control(c))[at.WHOLE_RATIO]
+    for r in range(len(amounts)):
+        amounts[r] = ratio * touches[r >> 1, CACHED + (r & 1)]
+    member = c
+    while member != 0:
+        t = views.control(member)
+        solution = views.per_body(t, at.SOLUTION)
+        external, struck = views.per_body(t, at.EXTERNAL), views.per_body(t, at.CONTACT_IMPULSE)
+        sum_up(member, places, touches, amounts, solution)
+        for i in range(t[at.MOVING]):
+            for axis in range(3):
+                struck[i, axis] += solution[i, axis]
+                external[i, axis] -= solution[i, axis]
+        member = t[at.NEXT]
+
+
+@kernel
+def finite(t):  # type: ignore[no-untyped-def]
+    """Whether impulses and velocities are finite; otherwise the first joint whose impulse is not is the fault."""
+    impulse, velocity = views.per_joint(t, at.IMPULSE), views.per_body(t, at.VELOCITY)
+    for k in range(t[at.JOINTS]):
+        if not math.isfinite(impulse[k, 0] + impulse[k, 1] + impulse[k, 2]):
+            t[at.FAULT] = k
+            return False
+    for i in range(t[at.MOVING]):
+        if not math.isfinite(velocity[i, 0] + velocity[i, 1] + velocity[i, 2]):
+            t[at.FAULT] = 0
+    return t[at.FAULT] < 0

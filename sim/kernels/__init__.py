@@ -13,6 +13,8 @@
 | ``commit`` | the end of a step: plastic state, breaking, what the joints bore |
 | ``energy``, ``guard`` | the ledger, and no energy from nowhere |
 | ``loose`` | bodies without joints, for the ledger of a space |
+| ``bodies``, ``settle`` | velocities and places of the bodies; joints and contacts in turn until they agree |
+| ``blow``, ``parts`` | when a step is taken in parts, inside the one that Chipmunk takes, and how |
 | ``step``, ``callbacks`` | one step of a structure, and the functions that Chipmunk calls |
 """
 

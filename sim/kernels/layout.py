@@ -69,7 +69,7 @@ _FIRST_ADDRESS = 27
     BODY_KEYS,  # hash table from a body's address …
     BODY_VALUES,  # … to its index
     PLACES,  # (room, 8) int64: contacts, see `contacts`
-    TOUCHES,  # (room, 15)
+    TOUCHES,  # (room, 25)
     PATTERN,  # (bodies, 3): forces of the load pattern for a load factor of 1
     IMAGE,  # (bodies, 3): H⁻¹ of it
     BEGUN_AT,  # (bodies, 3): positions at the start of a step that is taken in parts

@@ -34,7 +34,7 @@ from sim.kernels.residual import (
     take_last_tangents,
     take_stiffness,
 )
-from sim.kernels.spread import advance_spread, along, spread_residual, spread_step
+from sim.kernels.spread import advance_spread, along, spread_factor, spread_residual, spread_step
 from sim.memory import kernel
 
 MOST_NEWTON_STEPS = 200
@@ -166,13 +166,16 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
         steps += 1
         if steps == _PATIENCE:
             error, size, spring = predict_elastic(t, factor, tolerance)
+            gone = 0.0
         else:
             factorise_matrix(t, factor)
             start, change = newton_direction(t, factor, spring)
-            error, size, spring = search(t, start, change, tolerance, motion)
+            error, size, spring, gone = search(t, factor, start, change, tolerance, motion, steps >= _PATIENCE)
         converged = error <= tolerance * (size + motion) + rounding
-        # Below this it is rounding that remains, and another step would not take it away.
-        if steps > 3 and error >= 0.25 * best and error <= 1e6 * tolerance * (size + motion):
+        # Below this it is rounding that remains, and another step would not take it away; one that was cut short says
+        # so only when many have been taken.
+        enough = 3 if gone == 1.0 else _PATIENCE
+        if steps > enough and error >= 0.25 * best and error <= 1e6 * tolerance * (size + motion):
             converged = True
         best = min(best, error)
     total = size + motion
@@ -180,44 +183,53 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def search(t, start, change, tolerance, motion):  # type: ignore[no-untyped-def]
-    """Line search: how far to go along the direction found; returns what `measure` does there.
+def search(t, factor, start, change, tolerance, motion, careful):  # type: ignore[no-untyped-def]
+    """Line search: how far to go along the direction found; returns what `measure` does there, and how far it went.
 
     Along it the energy is convex, and falls with ``start`` at first: where it rises too steeply in the end, its least
-    value lies further back.
+    value lies further back. How steeply it falls is piecewise straight, with jumps of slope where joints begin or cease
+    to yield: the next place to look at is where the straight lines at both ends of what is left come to nought. Steps
+    that come after many others are ``careful``: by false position, which ends nearer to a kink.
     """
-    solution, pattern = views.per_body(t, at.SOLUTION), views.per_body(t, at.PATTERN)
-    share, low, high, fall_low, fall_high = 1.0, 0.0, 1.0, start, 0.0
-    step_length, last = 1.0, False
+    length, low, high, line_low, line_high = 1.0, 0.0, 1.0, 1.0, 1.0
+    gone, last = 0.0, False
+    fall_low, fall_high = start, 0.0
     error, size, spring = 0.0, 0.0, 0.0
     for attempt in range(MOST_SEARCHES):
-        error, size, spring = go(t, step_length, change)
+        error, size, spring = go(t, length - gone, change)
+        gone = length
         if last or error <= tolerance * (size + motion):
             break
-        fall = descent(t)
-        if t[at.SPREAD] == 1:
-            fall += spring * along(t, pattern, solution)
-        if attempt == 0:
-            if fall >= -0.5 * start:
-                break
-            fall_high = fall
-        elif abs(fall) <= 0.3 * start:
+        fall, bend = slope_along(t, factor, spring, change)
+        if abs(fall) <= 0.3 * start or (attempt == 0 and fall >= -0.5 * start):
             break
-        elif fall > 0.0:
-            low, fall_low = share, fall
+        nought = length + fall / bend if bend > 0.0 else 0.5 * (low + high)
+        if fall > 0.0:
+            low, fall_low, line_low = length, fall, nought
         else:
-            high, fall_high = share, fall
+            high, fall_high, line_high = length, fall, nought
         if high - low <= _KINK * high:
             # The slope jumps here, where a joint stops yielding. Beyond the jump its tangent is the stiff one, and
             # the next step can follow it; before it the same step would be tried again.
             if fall <= 0.0:
                 break
-            new, last = high, True
-        elif attempt % 3 == 2:
-            new = 0.5 * (low + high)
+            length, last = high, True
         else:
-            new = low + (high - low) * fall_low / (fall_low - fall_high)
-            new = min(max(new, low + 0.02 * (high - low)), high - 0.02 * (high - low))
-        step_length = new - share
-        share = new
-    return error, size, spring
+            length = min(line_low, line_high)
+            if careful:
+                length = low + (high - low) * fall_low / (fall_low - fall_high)
+                length = min(max(length, low + 0.02 * (high - low)), high - 0.02 * (high - low))
+            if attempt % 3 == 2 or not low < length < high:
+                length = 0.5 * (low + high)
+    return error, size, spring, gone
+
+
+@kernel
+def slope_along(t, factor, spring, change):  # type: ignore[no-untyped-def]
+    """How fast the energy falls along the direction, the load pattern's spring included, and how fast that falls."""
+    fall, bend = descent(t, factor)
+    if t[at.SPREAD] == 1:
+        way = along(t, views.per_body(t, at.PATTERN), views.per_body(t, at.SOLUTION))
+        fall += spring * way
+        bend += (spread_factor(t) * way + change) * way
+    return fall, bend

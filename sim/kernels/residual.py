@@ -163,15 +163,19 @@ def linearise(t, factor, with_residual):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def descent(t):  # type: ignore[no-untyped-def]
-    """r · J ΔV at the present residual."""
-    joint_bodies, gradient = views.joint_bodies(t), views.gradient(t)
+def descent(t, factor):  # type: ignore[no-untyped-def]
+    """r · J ΔV at the present residual, and by how much it falls for the whole step at the present tangents."""
+    joint_bodies, gradient, response = views.joint_bodies(t), views.gradient(t), views.response(t)
     residual, direction = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.SOLUTION)
-    total = 0.0
+    slope, d = views.per_joint(t, at.SLOPE), TANGENT
+    fall, bend = 0.0, 0.0
     for k in range(t[at.JOINTS]):
         x, y, z = rates(gradient, k, direction, joint_bodies[k, 0], direction, joint_bodies[k, 1])
-        total += residual[k, 0] * x + residual[k, 1] * y + residual[k, 2] * z
-    return total
+        fall += residual[k, 0] * x + residual[k, 1] * y + residual[k, 2] * z
+        square = response[k, d] * x * x + response[k, d + 3] * y * y + response[k, d + 5] * z * z
+        mixed = response[k, d + 1] * x * y + response[k, d + 2] * x * z + response[k, d + 4] * y * z
+        bend += factor * (square + 2.0 * mixed) + slope[k, 0] * x + slope[k, 1] * y + slope[k, 2] * z
+    return fall, bend
 
 
 @kernel

@@ -43,11 +43,17 @@ def spread_residual(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def spread_factor(t):  # type: ignore[no-untyped-def]
+    """c, the spring's part of the matrix."""
+    settings = views.settings(t)
+    return settings[STEP] ** 2 * (settings[BETA] + settings[DELTA]) * settings[SPREAD_STIFFNESS]
+
+
+@kernel
 def spread_step(t, residual):  # type: ignore[no-untyped-def]
     """Turn z into ΔV in the structure's solution, which it leaves y in its image for; returns ΔΛ."""
-    settings, pattern = views.settings(t), views.per_body(t, at.PATTERN)
+    pattern, c = views.per_body(t, at.PATTERN), spread_factor(t)
     solution, image = views.per_body(t, at.SOLUTION), views.per_body(t, at.IMAGE)
-    c = settings[STEP] ** 2 * (settings[BETA] + settings[DELTA]) * settings[SPREAD_STIFFNESS]
     for i in range(t[at.MOVING]):
         for j in range(3):
             image[i, j] = pattern[i, j]

@@ -60,14 +60,14 @@ def test_the_frame_bears_what_statics_says(standing: tuple[World, dict[str, Any]
     assert max(map(abs, beams)) < 1.5 * (487.5 * 10.0 / 0.625) * 2.5**2 / 8.0
 
 
-@pytest.mark.parametrize("dt", [1 / 240, 1 / 1000])
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 240, 1 / 1000])
 def test_the_ball_s_damage_is_local(dt: float) -> None:
     """At 30 m/s the struck column yields and nothing else does; at 5 m/s it stores all 12.5 kJ elastically."""
     world, found = run(builtin_text("multifloor-frame").replace('"5 m/s"', '"30 m/s"'), dt, duration=0.3)
     yielded = {name for name, joints in world.joints.items() if any(any(j.plastic_deformation) for j in joints)}
     assert yielded == {"frame-column-0-1"}
     assert found["joints broken"] == 0.0
-    assert 30e3 < found["plastic work in the struck column"] < 0.5 * 1000.0 * 30.0**2
+    assert found["plastic work in the struck column"] == pytest.approx(196e3, rel=0.05)
 
 
 def bridge(duration: float, load: str = "") -> tuple[World, dict[str, Any]]:

@@ -12,7 +12,6 @@ which Chipmunk finds them depends on what its collision tree has been through.
 import math
 
 import numpy as np
-from numba import njit
 
 from sim.chipmunk import (
     ANGLE,
@@ -84,7 +83,7 @@ from sim.kernels.layout import (
     WANTED,
     WHERE,
 )
-from sim.memory import floats, integers
+from sim.memory import floats, integers, kernel
 
 # Surfaces that turn come apart by a distance that grows with the square of the step, and a contact that was lost would
 # be found again a step of free motion later. So a pressed contact keeps this many times that distance of overlap,
@@ -93,7 +92,7 @@ _KEPT = 8.0
 SETTLE = 0.5
 
 
-@njit(error_model="numpy")
+@kernel
 def find(t, body):  # type: ignore[no-untyped-def]
     """Index of the body at an address in the structure, or -1; open addressing, a power of two long."""
     length = t[at.HASH_LENGTH]
@@ -106,7 +105,7 @@ def find(t, body):  # type: ignore[no-untyped-def]
     return -1
 
 
-@njit(error_model="numpy")
+@kernel
 def owner_of(body, functions):  # type: ignore[no-untyped-def]
     """Control table of the structure that a body belongs to, 0 if none: that of any ductile joint at it."""
     constraint = integers(body, BODY_FULL_WORDS)[CONSTRAINTS]
@@ -118,7 +117,7 @@ def owner_of(body, functions):  # type: ignore[no-untyped-def]
     return 0
 
 
-@njit(error_model="numpy")
+@kernel
 def unite(one, other):  # type: ignore[no-untyped-def]
     """Put the groups of two structures (addresses of control tables) together."""
     first, second = views.control(one), views.control(other)
@@ -139,7 +138,7 @@ def unite(one, other):  # type: ignore[no-untyped-def]
         joining = t[at.NEXT]
 
 
-@njit(error_model="numpy")
+@kernel
 def collect(c, t):  # type: ignore[no-untyped-def]
     """Take over the contacts of this step, and form a group with the structures they are with."""
     moving, body_at = t[at.MOVING], views.body_at(t)
@@ -205,14 +204,14 @@ def collect(c, t):  # type: ignore[no-untyped-def]
     t[at.CONTACTS], t[at.MISSED] = count, missed
 
 
-@njit(error_model="numpy")
+@kernel
 def load_loose(touch, b):  # type: ignore[no-untyped-def]
     """Note how and where the other body of a contact is."""
     touch[LOOSE_START], touch[LOOSE_START + 1], touch[LOOSE_START + 2] = b[VX], b[VX + 1], b[SPIN]
     touch[LOOSE_AT], touch[LOOSE_AT + 1], touch[LOOSE_AT + 2] = b[X], b[X + 1], b[ANGLE]
 
 
-@njit(error_model="numpy")
+@kernel
 def distance(place, touch):  # type: ignore[no-untyped-def]
     """Distance of the two surfaces at a contact, negative where they overlap [m]."""
     a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
@@ -221,7 +220,7 @@ def distance(place, touch):  # type: ignore[no-untyped-def]
     return touch[NORMAL] * x + touch[NORMAL + 1] * y
 
 
-@njit(error_model="numpy")
+@kernel
 def kept(place, touch, h):  # type: ignore[no-untyped-def]
     """Overlap that a pressed contact keeps: some times ½ r (ω h)² of both bodies, by which turning parts them [m]."""
     a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
@@ -229,7 +228,7 @@ def kept(place, touch, h):  # type: ignore[no-untyped-def]
     return 0.5 * _KEPT * (ra * (a[SPIN] * h) ** 2 + rb * (b[SPIN] * h) ** 2)
 
 
-@njit(error_model="numpy")
+@kernel
 def hand_back(t):  # type: ignore[no-untyped-def]
     """Undo what `collect` did to the contacts."""
     places = views.places(t)
@@ -238,7 +237,7 @@ def hand_back(t):  # type: ignore[no-untyped-def]
         contact[CONTACT_NORMAL_MASS], contact[CONTACT_TANGENT_MASS] = 1.0, 1.0
 
 
-@njit(error_model="numpy")
+@kernel
 def arrange(places, touches, count):  # type: ignore[no-untyped-def]
     """Sort contacts by the indices of their bodies and their hashes (by insertion: they are few)."""
     for k in range(1, count):
@@ -251,7 +250,7 @@ def arrange(places, touches, count):  # type: ignore[no-untyped-def]
             m -= 1
 
 
-@njit(error_model="numpy")
+@kernel
 def comes_before(p, q):  # type: ignore[no-untyped-def]
     """Whether contact p is to be solved before q."""
     if p[INDEX_A] != q[INDEX_A]:
@@ -261,7 +260,7 @@ def comes_before(p, q):  # type: ignore[no-untyped-def]
     return p[HASH] < q[HASH]
 
 
-@njit(error_model="numpy")
+@kernel
 def direction(touch, row):  # type: ignore[no-untyped-def]
     """Unit vector of a row (even: normal, odd: tangent) and its moments about a and b."""
     dx, dy = touch[NORMAL], touch[NORMAL + 1]
@@ -270,7 +269,7 @@ def direction(touch, row):  # type: ignore[no-untyped-def]
     return dx, dy, touch[ARM_A] * dy - touch[ARM_A + 1] * dx, touch[ARM_B] * dy - touch[ARM_B + 1] * dx
 
 
-@njit(error_model="numpy")
+@kernel
 def other_velocity(c, place, touch, row):  # type: ignore[no-untyped-def]
     """What bodies that are not in structure ``c`` give to the velocity of b relative to a along a row, at present."""
     dx, dy, ma, mb = direction(touch, row)
@@ -284,7 +283,7 @@ def other_velocity(c, place, touch, row):  # type: ignore[no-untyped-def]
     return total
 
 
-@njit(error_model="numpy")
+@kernel
 def own_velocity(c, place, touch, row, velocity):  # type: ignore[no-untyped-def]
     """What the bodies of structure ``c`` give to it, at its velocities (bodies, 3)."""
     dx, dy, ma, mb = direction(touch, row)
@@ -298,7 +297,7 @@ def own_velocity(c, place, touch, row, velocity):  # type: ignore[no-untyped-def
     return total
 
 
-@njit(error_model="numpy")
+@kernel
 def add_row(c, place, touch, row, amount, vector):  # type: ignore[no-untyped-def]
     """Add ``amount`` of a row's unit impulse to the bodies of structure ``c`` in its ``vector``, (bodies, 3)."""
     dx, dy, ma, mb = direction(touch, row)
@@ -314,7 +313,7 @@ def add_row(c, place, touch, row, amount, vector):  # type: ignore[no-untyped-de
         x[2] -= amount * ma
 
 
-@njit(error_model="numpy")
+@kernel
 def push_loose(place, touch, row, amount, offset, spin):  # type: ignore[no-untyped-def]
     """Give a row's impulse to the loose body of a contact, if it has one; velocities at ``offset`` and ``spin``."""
     dx, dy, ma, mb = direction(touch, row)

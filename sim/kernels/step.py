@@ -1,7 +1,5 @@
 """One step of a structure: its beginning, the solves in Chipmunk's iterations, and its end."""
 
-from numba import njit
-
 from sim.chipmunk import (
     ANGLE,
     BIAS_SPIN,
@@ -26,13 +24,13 @@ from sim.kernels.layout import WHERE
 from sim.kernels.newton import restart
 from sim.kernels.parts import close_step, conclude, renew, take_parts
 from sim.kernels.settle import book_cached, finite, settle_bounces
-from sim.memory import call_notice, clear, floats
+from sim.memory import call_notice, clear, floats, kernel
 
 # A movement without velocity below this [m, rad], over 1 + |x|, is rounding.
 _UNMOVED = 1e-12
 
 
-@njit(error_model="numpy")
+@kernel
 def begin(c, h):  # type: ignore[no-untyped-def]
     """Start of a step: where the joints are, and what their bodies' velocities were.
 
@@ -82,7 +80,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
         collect(c, t)
 
 
-@njit(error_model="numpy")
+@kernel
 def find_shifts(t, h):  # type: ignore[no-untyped-def]
     """Movement since the last step that its velocities do not explain: to take out overlap, and by hand."""
     body_at, shift = views.body_at(t), views.shift(t)
@@ -101,7 +99,7 @@ def find_shifts(t, h):  # type: ignore[no-untyped-def]
                 t[at.SHIFTED] = 1
 
 
-@njit(error_model="numpy")
+@kernel
 def solve(c):  # type: ignore[no-untyped-def]
     """The impulses of a group's joints and contacts at the bodies' present velocities, breaking included."""
     head = views.control(c)
@@ -148,7 +146,7 @@ def solve(c):  # type: ignore[no-untyped-def]
         member = t[at.NEXT]
 
 
-@njit(error_model="numpy")
+@kernel
 def refuse(c):  # type: ignore[no-untyped-def]
     """Put the bodies of a group back to where and how they were before the step."""
     member = c
@@ -170,7 +168,7 @@ def refuse(c):  # type: ignore[no-untyped-def]
         member = t[at.NEXT]
 
 
-@njit(error_model="numpy")
+@kernel
 def finish(c):  # type: ignore[no-untyped-def]
     """End of a step: commit the laws, and tell Python when a joint broke or the step was refused."""
     t = views.control(c)

@@ -35,7 +35,7 @@ def explained_compilation(console: Console) -> Iterator[None]:
     timer = threading.Timer(
         _PATIENCE,
         console.print,
-        args=["Compiling the joint kernels for this machine: half a minute or so, once. Later runs load a cache."],
+        args=["Compiling the joint kernels for this machine: up to a minute, once. Later runs load a cache."],
     )
     timer.daemon = True
     timer.start()

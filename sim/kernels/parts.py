@@ -110,7 +110,7 @@ def conclude(c, t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def take_parts(head, parts, touching):  # type: ignore[no-untyped-def]
+def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     """Take all parts of a step but the last one, and begin that; whether all of them converged."""
     others = others_of(head)
     pushes = release(head, others)
@@ -126,7 +126,7 @@ def take_parts(head, parts, touching):  # type: ignore[no-untyped-def]
         while c != 0:
             restart(views.control(c))
             c = views.control(c)[at.NEXT]
-        converged = settle_bounces(head, True, touching) and converged
+        converged = settle_bounces(head, fresh, touching) and converged
         c = head
         while c != 0:
             t = views.control(c)

@@ -55,7 +55,8 @@ def settle_bounces(c, fresh, touching):  # type: ignore[no-untyped-def]
             if views.control(c)[at.FAULT] >= 0 or not creates_energy(c):
                 break
             bounce_less(c, 0.5 if k < MOST_HALVINGS - 1 else 0.0)
-            converged = settle(c, False, True)
+            # Not the constants False and True: Numba would compile all of it anew for them.
+            converged = settle(c, not touching, touching)
     return converged
 
 

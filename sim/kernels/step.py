@@ -122,7 +122,7 @@ def solve(c):  # type: ignore[no-untyped-def]
             book_cached(c)
         parts = count_parts(c)
         if parts > 1:
-            converged = take_parts(c, parts, touching)
+            converged = take_parts(c, parts, fresh, touching)
         member = c
         while member != 0:
             t = views.control(member)

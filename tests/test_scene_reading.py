@@ -40,12 +40,6 @@ def test_written_out_scene_is_the_same(tmp_path: Path) -> None:
         ("rectangle 50x100 mm", "IPE 305", "members.beam.section", "did you mean"),
         ("fy=235 MPa", "fy=235 mm", "members.beam.material > fy", "does not fit"),
         ("gravity =", 'yielding = "ideal"\ngravity =', "yielding", "ideal"),
-        (
-            "rectangle 50x100 mm",
-            "rectangle 50x100 mm of S355 + rectangle 50x10 mm at 0,100 mm",
-            "members.beam.section",
-            "several",
-        ),
         ('"clamped"', '"clampd"', "nodes.root.support", "clampd"),
         ('node = "tip"', 'node = "tp"', "push.node", "the nodes are root, tip"),
         ('to = "tip"', "", "members.beam", "required field `to`"),

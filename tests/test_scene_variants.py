@@ -49,7 +49,8 @@ def test_80_m_fall_by_the_same_angle_in_one_piece_and_in_four() -> None:
 def test_a_dropped_box_turns_the_root_by_what_is_left_of_its_energy(dt: float) -> None:
     """One plastic blow and one hinge: ½ (m v a)² / I + (W a + q L² / 2) sin(θ) = M_max θ, θ = 0.47 rad.
 
-    The beam takes some of it elastically and loses some at further contacts, so the root turns by less.
+    The beam takes some of it elastically and loses some at further contacts, so the root turns by a twentieth less.
+    pymunk moves bodies before it speeds them up, so they fall half a step late; it sees a contact within a step.
     """
     mass, arm, beam = 500e3, 17.0, 7800.0 * 2.0 * 20.0**3 / 3.0
     momentum = mass * math.sqrt(2.0 * G * 29.0) * arm
@@ -57,8 +58,8 @@ def test_a_dropped_box_turns_the_root_by_what_is_left_of_its_energy(dt: float) -
     rigid = brentq(lambda angle: kinetic + weight * math.sin(angle) - M_MAX * angle, 0.1, 1.5)
     assert rigid == pytest.approx(0.473, abs=1e-3)
     world, found = run("dropped-box", dt)
-    assert 0.85 * rigid < found["rotation of the root"] < rigid
-    assert found["box hits the beam"] == pytest.approx(math.sqrt(2.0 * 29.0 / G), abs=dt + 1e-3)
+    assert found["rotation of the root"] == pytest.approx(0.95 * rigid, rel=0.03)
+    assert found["box hits the beam"] == pytest.approx(math.sqrt(2.0 * 29.0 / G), abs=1.5 * dt + 1e-3)
     assert found["joints broken"] == 0.0
     assert abs(energy(world.space).gap) < 1e-6 * energy(world.space).external
 
@@ -85,7 +86,7 @@ def after_the_blow(speed: float) -> float:
 
 
 @pytest.mark.parametrize(("name", "speed"), [("post-holds", 5.0), ("post-bends", 10.0)])
-@pytest.mark.parametrize("dt", [1 / 240, 1 / 1000])
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 240])
 def test_a_post_stops_a_ball_as_its_foot_bends(name: str, speed: float, dt: float) -> None:
     """½ I ω² = M_max θ."""
     _, found = run(name, dt)
@@ -99,7 +100,7 @@ def test_a_post_stops_a_ball_as_its_foot_bends(name: str, speed: float, dt: floa
 def test_a_brittle_post_breaks_and_lets_the_ball_on(speed: float) -> None:
     """√(ω² - 2 M_max 0.2 / I) at the height of the ball."""
     text = builtin_text("post-impact").replace('"30 m/s"', f'"{speed} m/s"')
-    _, found = run(text, 1 / 240, duration=0.5)
+    _, found = run(text, duration=0.5)
     assert found["foot broken"] == 1.0
     left = 1.4 * math.sqrt(after_the_blow(speed) ** 2 - 2.0 * FOOT * 0.2 / POST_AND_BALL)
     assert found["ball's speed behind the post"] == pytest.approx(left, rel=0.1)

@@ -231,3 +231,15 @@ def test_a_scene_that_cannot_stand_is_told_so(tmp_path: Path, capsys: pytest.Cap
     assert ductile("calibrate", str(scene), "-o", str(tmp_path / "o")) == 2
     assert "own weight" in capsys.readouterr().err
     assert not (tmp_path / "o").exists()
+
+
+@pytest.mark.parametrize("command", [["simulate"], ["calibrate"], ["export", "--engine", "json"], ["study"], ["fit"]])
+def test_joints_are_of_one_material(
+    command: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    two = "rectangle 50x100 mm of S355 + rectangle 50x10 mm at 0,100 mm"
+    Path("two.toml").write_text(builtin_text("cantilever").replace("rectangle 50x100 mm", two), encoding="utf-8")
+    assert ductile(command[0], "two.toml", *command[1:]) == 2
+    assert "members.beam.section: joints are of one material" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["two.toml"]

@@ -9,17 +9,12 @@ back, and a pseudo-velocity makes Chipmunk's next move, which is one of a whole 
 Which surfaces meet, and in which direction, stays as Chipmunk found it; their distance g is followed, and a contact may
 close it in a part of length h but not pass it, v_n ≥ - g / h.
 
-A blow is noticed once bodies overlap. All are put back to where they were when they touched, τ ago, and the parts are
-those of h + τ. Chipmunk's velocities belong to half a step before their time, as energies go (n g h of a body that fell
-for n steps, where √(n (n + 1)) g h belongs to its way), so what falls is given what outer forces do in ½ h - τ.
+A blow is noticed late, and all go back to when they touched (`late.py`); the parts are those of what is left then, too.
 """
 
 import numpy as np
 
 from sim.chipmunk import (
-    ANGLE,
-    BIAS_SPIN,
-    BIAS_VX,
     BODY_FULL_WORDS,
     BODY_SPACE,
     BODY_WORDS,
@@ -31,23 +26,21 @@ from sim.chipmunk import (
     SPACE_WORDS,
     SPIN,
     VX,
-    X,
 )
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blow import OVER, elastic_energy, flows, forget
-from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities, write
+from sim.kernels.bodies import load_velocities, move, store_velocities, write
 from sim.kernels.commit import commit
 from sim.kernels.complement import relative
-from sim.kernels.contacts import SETTLE, kept, other_velocity, own_velocity, push_loose
+from sim.kernels.contacts import SETTLE, kept, other_velocity
 from sim.kernels.energy import close
 from sim.kernels.guard import close_from_below
 from sim.kernels.inertia import mass_of, moment_of, weigh
 from sim.kernels.kinematics import leave_out, prepare
+from sim.kernels.late import go_back, lateness
 from sim.kernels.layout import (
     BLOW,
-    BODY_A,
-    BODY_B,
     BOUNCE,
     CACHED,
     EARLIER,
@@ -60,20 +53,17 @@ from sim.kernels.layout import (
     LEDGER_NUMERICAL,
     LEDGER_PLASTIC,
     LOOSE_AT,
-    LOOSE_START,
     OTHER_START,
-    OWNER_A,
-    OWNER_B,
     PUSH,
     STEP,
     STEP_RATIO,
     STRIKE,
     WANTED,
     WHERE,
-    WHOLE_RATIO,
     WHOLE_STEP,
 )
 from sim.kernels.newton import restart
+from sim.kernels.others import load_others, others_of, put_back, release, which
 from sim.kernels.settle import finite, settle_bounces
 from sim.memory import clear, floats, integers, kernel
 
@@ -148,105 +138,6 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def load_others(others, out):  # type: ignore[no-untyped-def]
-    """Velocities of the others."""
-    for i in range(len(others)):
-        b = floats(others[i], BODY_WORDS)
-        out[i, 0], out[i, 1], out[i, 2] = b[VX], b[VX + 1], b[SPIN]
-
-
-@kernel
-def others_of(head):  # type: ignore[no-untyped-def]
-    """Addresses of the bodies that move with a group's but are not solved with it: loose ones, and moving held ones."""
-    room, c = 0, head
-    while c != 0:
-        t = views.control(c)
-        room += t[at.CONTACTS] + t[at.BODIES] - t[at.MOVING]
-        c = t[at.NEXT]
-    found, count, c = np.empty(room, np.int64), 0, head
-    while c != 0:
-        t = views.control(c)
-        places, body_at = views.places(t), views.body_at(t)
-        for k in range(t[at.CONTACTS]):
-            for side in range(2):
-                owner, body = (
-                    (places[k, OWNER_A], places[k, BODY_A]) if side == 0 else (places[k, OWNER_B], places[k, BODY_B])
-                )
-                if owner == 0:
-                    count = note(found, count, body)
-        for i in range(t[at.MOVING], t[at.BODIES]):
-            count = note(found, count, body_at[i])
-        c = t[at.NEXT]
-    return found[:count]
-
-
-@kernel
-def note(found, count, body):  # type: ignore[no-untyped-def]
-    """Add a body that moves to those found, once; returns how many there are."""
-    b = floats(body, BODY_WORDS)
-    if b[MASS_INVERSE] == 0.0 and b[VX] == 0.0 and b[VX + 1] == 0.0 and b[SPIN] == 0.0:
-        return count
-    for i in range(count):
-        if found[i] == body:
-            return count
-    found[count] = body
-    return count + 1
-
-
-@kernel
-def release(head, others):  # type: ignore[no-untyped-def]
-    """Take back what was done to the others so far; returns how forces from outside change their velocities."""
-    pushes, c = np.zeros((len(others), 3)), head
-    while c != 0:
-        t = views.control(c)
-        places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[WHOLE_RATIO]
-        for k in range(t[at.CONTACTS]):
-            for row in range(2):
-                push_loose(places[k], touches[k], row, -ratio * touches[k, CACHED + row], VX, SPIN)
-        c = t[at.NEXT]
-    c = head
-    while c != 0:
-        t = views.control(c)
-        places, touches = views.places(t), views.touches(t)
-        for k in range(t[at.CONTACTS]):
-            i = which(others, places[k])
-            if i >= 0:
-                b = floats(others[i], BODY_WORDS)
-                for axis in range(3):
-                    at_start = touches[k, LOOSE_START + axis]
-                    word = SPIN if axis == 2 else VX + axis
-                    if b[word] != at_start:
-                        pushes[i, axis] = b[word] - at_start
-                        b[word] = at_start
-        c = t[at.NEXT]
-    return pushes
-
-
-@kernel
-def which(others, place):  # type: ignore[no-untyped-def]
-    """Where the loose body of a contact is among the others, or -1."""
-    for i in range(len(others)):
-        if (place[OWNER_A] == 0 and place[BODY_A] == others[i]) or (place[OWNER_B] == 0 and place[BODY_B] == others[i]):
-            return i
-    return -1
-
-
-@kernel
-def lateness(head):  # type: ignore[no-untyped-def]
-    """How long ago those that strike have touched, at most the last step [s]."""
-    late, c = 0.0, head
-    while c != 0:
-        t = views.control(c)
-        touches, settings = views.touches(t), views.settings(t)
-        for k in range(t[at.CONTACTS]):
-            if touches[k, STRIKE] > 0.0:
-                late = max(late, -touches[k, GAP] / touches[k, STRIKE])
-        late = min(late, settings[STEP] / settings[STEP_RATIO])
-        c = t[at.NEXT]
-    return late
-
-
-@kernel
 def open_step(head, late, parts):  # type: ignore[no-untyped-def]
     """Make steps of the parts, over what remains of the last step, too; nothing has been applied yet.
 
@@ -272,47 +163,6 @@ def open_step(head, late, parts):  # type: ignore[no-untyped-def]
         renew(t)
         c = t[at.NEXT]
     return share
-
-
-@kernel
-def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
-    """Put a group and what is with it back to where it was when those that strike touched, with the velocities then.
-
-    What something holds keeps its velocities: there forces from outside are borne, and give none.
-    """
-    for i in range(len(others)):
-        b = floats(others[i], BODY_WORDS)
-        move(others[i], -late * b[VX], -late * b[VX + 1], -late * b[SPIN])
-    c = head
-    share = 0.5 - late / views.settings(views.control(head))[WHOLE_STEP]
-    while c != 0:
-        t = views.control(c)
-        places, touches, struck = views.places(t), views.touches(t), False
-        start, shift, body_at = views.per_body(t, at.START_VELOCITY), views.shift(t), views.body_at(t)
-        external, weight = views.per_body(t, at.EXTERNAL), views.weight(t)
-        for k in range(t[at.CONTACTS]):
-            touches[k, GAP] -= late * (touches[k, OTHER_START] + own_velocity(c, places[k], touches[k], 0, start))
-            i = which(others, places[k])
-            if touches[k, STRIKE] > 0.0:
-                struck = True
-                if i >= 0:
-                    b = floats(others[i], BODY_WORDS)
-                    b[VX] = touches[k, LOOSE_START] + share * pushes[i, 0]
-                    b[VX + 1] = touches[k, LOOSE_START + 1] + share * pushes[i, 1]
-                    b[SPIN] = touches[k, LOOSE_START + 2] + share * pushes[i, 2]
-        load_positions(t, views.per_body(t, at.BEGUN_AT))
-        for i in range(t[at.MOVING]):
-            move(body_at[i], -late * start[i, 0], -late * start[i, 1], -late * start[i, 2])
-        for i in range(t[at.BODIES]):
-            for axis in range(3):
-                shift[i, axis] -= late * start[i, axis]
-        t[at.SHIFTED] = 1
-        if struck and t[at.FREE] == 1:
-            for i in range(t[at.MOVING]):
-                start[i, 0] += share * external[i, 0] * weight[i, INVERSE_M]
-                start[i, 1] += share * external[i, 1] * weight[i, INVERSE_M]
-                start[i, 2] += share * external[i, 2] / moment_of(floats(body_at[i], BODY_WORDS))
-        c = t[at.NEXT]
 
 
 @kernel
@@ -465,14 +315,3 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
         contact = floats(places[k, WHERE], CONTACT_WORDS)
         contact[CONTACT_NORMAL_IMPULSE] += touches[k, EARLIER]
         contact[CONTACT_TANGENT_IMPULSE] += touches[k, EARLIER + 1]
-
-
-@kernel
-def put_back(body, place, h, whole):  # type: ignore[no-untyped-def]
-    """Put a body back to ``place``, from where the next ``whole`` step moves it to what is a part ``h`` from here."""
-    b = floats(body, BODY_FULL_WORDS)
-    x, y, turn = b[X] - place[0], b[X + 1] - place[1], b[ANGLE] - place[2]
-    move(body, -x, -y, -turn)
-    b[BIAS_VX] += (x + h * b[VX]) / whole - b[VX]
-    b[BIAS_VX + 1] += (y + h * b[VX + 1]) / whole - b[VX + 1]
-    b[BIAS_SPIN] += (turn + h * b[SPIN]) / whole - b[SPIN]

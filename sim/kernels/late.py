@@ -1,0 +1,72 @@
+"""Back to when bodies touched.
+
+A blow is noticed once bodies overlap. All are put back to where they were when they touched, τ ago, and the parts are
+those of h + τ. Chipmunk's velocities belong to half a step before their time, as energies go (n g h of a body that fell
+for n steps, where √(n (n + 1)) g h belongs to its way), so what falls is given what outer forces do in ½ h - τ.
+"""
+
+from sim.chipmunk import BODY_WORDS, SPIN, VX
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.bodies import load_positions, move
+from sim.kernels.contacts import own_velocity
+from sim.kernels.inertia import moment_of
+from sim.kernels.layout import GAP, INVERSE_M, LOOSE_START, OTHER_START, STEP, STEP_RATIO, STRIKE, WHOLE_STEP
+from sim.kernels.others import which
+from sim.memory import floats, kernel
+
+
+@kernel
+def lateness(head):  # type: ignore[no-untyped-def]
+    """How long ago those that strike have touched, at most the last step [s]."""
+    late, c = 0.0, head
+    while c != 0:
+        t = views.control(c)
+        touches, settings = views.touches(t), views.settings(t)
+        for k in range(t[at.CONTACTS]):
+            if touches[k, STRIKE] > 0.0:
+                late = max(late, -touches[k, GAP] / touches[k, STRIKE])
+        late = min(late, settings[STEP] / settings[STEP_RATIO])
+        c = t[at.NEXT]
+    return late
+
+
+@kernel
+def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
+    """Put a group and what is with it back to where it was when those that strike touched, with the velocities then.
+
+    What something holds keeps its velocities: there forces from outside are borne, and give none.
+    """
+    for i in range(len(others)):
+        b = floats(others[i], BODY_WORDS)
+        move(others[i], -late * b[VX], -late * b[VX + 1], -late * b[SPIN])
+    c = head
+    share = 0.5 - late / views.settings(views.control(head))[WHOLE_STEP]
+    while c != 0:
+        t = views.control(c)
+        places, touches, struck = views.places(t), views.touches(t), False
+        start, shift, body_at = views.per_body(t, at.START_VELOCITY), views.shift(t), views.body_at(t)
+        external, weight = views.per_body(t, at.EXTERNAL), views.weight(t)
+        for k in range(t[at.CONTACTS]):
+            touches[k, GAP] -= late * (touches[k, OTHER_START] + own_velocity(c, places[k], touches[k], 0, start))
+            i = which(others, places[k])
+            if touches[k, STRIKE] > 0.0:
+                struck = True
+                if i >= 0:
+                    b = floats(others[i], BODY_WORDS)
+                    b[VX] = touches[k, LOOSE_START] + share * pushes[i, 0]
+                    b[VX + 1] = touches[k, LOOSE_START + 1] + share * pushes[i, 1]
+                    b[SPIN] = touches[k, LOOSE_START + 2] + share * pushes[i, 2]
+        load_positions(t, views.per_body(t, at.BEGUN_AT))
+        for i in range(t[at.MOVING]):
+            move(body_at[i], -late * start[i, 0], -late * start[i, 1], -late * start[i, 2])
+        for i in range(t[at.BODIES]):
+            for axis in range(3):
+                shift[i, axis] -= late * start[i, axis]
+        t[at.SHIFTED] = 1
+        if struck and t[at.FREE] == 1:
+            for i in range(t[at.MOVING]):
+                start[i, 0] += share * external[i, 0] * weight[i, INVERSE_M]
+                start[i, 1] += share * external[i, 1] * weight[i, INVERSE_M]
+                start[i, 2] += share * external[i, 2] / moment_of(floats(body_at[i], BODY_WORDS))
+        c = t[at.NEXT]

@@ -18,8 +18,9 @@ A hinge that grows along its member is one hinge, and so is one at a node where 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -36,8 +37,8 @@ _LEVEL = 0.999
 
 
 @dataclass(frozen=True)
-class HingeEvent:
-    """A plastic hinge that forms.
+class Hinge:
+    """Where a plastic hinge is.
 
     Attributes
     ----------
@@ -46,6 +47,19 @@ class HingeEvent:
         From the member's start [m].
     node : str
         The node it is at, or empty.
+    """
+
+    member: str
+    position: float
+    node: str
+
+
+@dataclass(frozen=True)
+class HingeEvent(Hinge):
+    """A plastic hinge that forms along a path.
+
+    Attributes
+    ----------
     load, displacement : float
         The path's load and displacement when it forms.
     error_estimate : float
@@ -55,13 +69,19 @@ class HingeEvent:
         Difference of the displacement [m]; None where that has no such hinge.
     """
 
-    member: str
-    position: float
-    node: str
     load: float
     displacement: float
     error_estimate: float = 1.0
     displacement_error: float | None = None
+
+
+Found = TypeVar("Found", bound=Hinge)
+
+
+def nearest(hinge: Found, others: Iterable[Found]) -> Found | None:
+    """The one of ``others`` at the same node, or else the nearest along the same member; the first of several."""
+    same = [h for h in others if h.node == hinge.node and (h.node or h.member == hinge.member)]
+    return min(same, key=lambda h: (h.member != hinge.member, abs(h.position - hinge.position)), default=None)
 
 
 def plastic_moment(

@@ -14,21 +14,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem_reference.frame import Frame
-from fem_reference.hinge_events import NEAR, THERE, apart, first_time, full_sections, utilisation
+from fem_reference.hinge_events import NEAR, THERE, Hinge, apart, first_time, full_sections, nearest, utilisation
 from scene import Scene
 
 
 @dataclass(frozen=True)
-class HingeTime:
+class HingeTime(Hinge):
     """A plastic hinge that forms in a motion.
 
     Attributes
     ----------
-    member : str
-    position : float
-        From the member's start [m].
-    node : str
-        The node it is at, or empty.
     time : float
         When it forms [s].
     time_error : float, optional
@@ -38,9 +33,6 @@ class HingeTime:
         Likewise of the position [m].
     """
 
-    member: str
-    position: float
-    node: str
     time: float
     time_error: float | None = None
     position_error: float | None = None
@@ -60,7 +52,7 @@ def with_time_errors(fine: tuple[HingeTime, ...], others: Sequence[tuple[HingeTi
     """``fine`` with its differences from the nearest hinges of each of the ``others``, summed."""
     judged = []
     for hinge in fine:
-        pairs = [_nearest(hinge, other) for other in others]
+        pairs = [_twin(hinge, other) for other in others]
         twins = [twin for twin in pairs if twin is not None]
         if len(twins) == len(pairs):
             late = sum(abs(twin.time - hinge.time) for twin in twins)
@@ -71,10 +63,6 @@ def with_time_errors(fine: tuple[HingeTime, ...], others: Sequence[tuple[HingeTi
     return tuple(judged)
 
 
-def _nearest(hinge: HingeTime, others: tuple[HingeTime, ...]) -> HingeTime | None:
-    same = [h for h in others if h.node == hinge.node and (h.node or h.member == hinge.member)]
-    return min(
-        same,
-        key=lambda h: (h.member != hinge.member, abs(h.position - hinge.position), abs(h.time - hinge.time)),
-        default=None,
-    )
+def _twin(hinge: HingeTime, others: tuple[HingeTime, ...]) -> HingeTime | None:
+    """The nearest of ``others``, and of several in one place that which forms at nearly the same time."""
+    return nearest(hinge, sorted(others, key=lambda h: abs(h.time - hinge.time)))

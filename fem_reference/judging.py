@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fem_reference.hinge_events import HingeEvent
+from fem_reference.hinge_events import HingeEvent, nearest
 from fem_reference.paths import Trace
 from scene import Scene
 
@@ -50,9 +50,7 @@ def with_errors(fine: tuple[HingeEvent, ...], coarse: tuple[HingeEvent, ...], sc
     """``fine`` with the differences of its loads from the nearest hinges of ``coarse``."""
     judged = []
     for found in fine:
-        event = found
-        same = [e for e in coarse if e.node == event.node and (e.node or e.member == event.member)]
-        near = min(same, key=lambda e: (e.member != found.member, abs(e.position - found.position)), default=None)
+        event, near = found, nearest(found, coarse)
         if near is not None:
             load, moved = abs(near.load - event.load) / scale, abs(near.displacement - event.displacement)
             event = replace(event, error_estimate=load, displacement_error=moved)

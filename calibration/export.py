@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
+from calibration.motion_tuning import MotionCalibration
 from calibration.trials import Trial
 from calibration.tuning import Calibration
 from calibration.versions import versions
@@ -28,13 +29,32 @@ def settings(model: Model) -> dict[str, Any]:
     return values
 
 
-def calibration_object(result: Calibration) -> dict[str, Any]:
-    """The calibration as one object for JSON; SI units."""
-    best, reference = result.best, result.reference
+def subject(result: Calibration | MotionCalibration) -> dict[str, Any]:
+    """What was calibrated, and what its members bear."""
     return {
         "scene": result.name,
         "title": result.scene.title,
         "capacity": {name: capacity.values() for name, capacity in result.capacity.items()},
+    }
+
+
+def outcome(result: Calibration | MotionCalibration) -> dict[str, Any]:
+    """Which models broke down, and what came of it."""
+    return {
+        "failures": [{**settings(failure.model), "reason": failure.reason} for failure in result.failures],
+        "target_error": result.target_error,
+        "target_met": result.target_met,
+        "limit": result.limit,
+        "remarks": list(result.remarks),
+        "versions": versions(),
+    }
+
+
+def calibration_object(result: Calibration) -> dict[str, Any]:
+    """The calibration as one object for JSON; SI units."""
+    best, reference = result.best, result.reference
+    return {
+        **subject(result),
         "reference": {
             "method": reference.method,
             "displacement": reference.displacement.tolist(),
@@ -74,12 +94,7 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
             "microseconds_per_joint_step": best.push.microseconds_per_joint_step,
         },
         "pareto": [_tried(trial) for trial in result.trials],
-        "failures": [{**settings(failure.model), "reason": failure.reason} for failure in result.failures],
-        "target_error": result.target_error,
-        "target_met": result.target_met,
-        "limit": result.limit,
-        "remarks": list(result.remarks),
-        "versions": versions(),
+        **outcome(result),
     }
 
 

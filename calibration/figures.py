@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import matplotlib
 import numpy as np
@@ -57,25 +59,49 @@ def curves(result: Calibration) -> Figure:
 
 def frontier(result: Calibration) -> Figure:
     """Path error of every model tried against what a simulated second of it costs."""
+    groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for trial in result.trials:
+        point = (trial.push.seconds_per_simulated_second, trial.errors.path_max)
+        groups.setdefault((trial.model.rule, trial.model.law), []).append(point)
+    markers = dict(zip(RULES, "osD", strict=True))
+    colours = dict(zip(LAWS, (INK, FAINT, REFERENCE, MODEL), strict=True))
+    clouds = [
+        Cloud(f"{rule}, {law}", markers[rule], colours[law], points) for (rule, law), points in sorted(groups.items())
+    ]
+    chosen = (result.best.push.seconds_per_simulated_second, result.best.errors.path_max)
+    return error_against_cost(clouds, chosen, result.target_error, "path error [% of peak load]")
+
+
+class Cloud(NamedTuple):
+    """Models of one kind: seconds for a simulated second, and error [-], of each."""
+
+    name: str
+    marker: str
+    colour: str
+    points: Sequence[tuple[float, float]]
+
+
+def error_against_cost(
+    clouds: Iterable[Cloud], chosen: tuple[float, float], target_error: float, ordinate: str
+) -> Figure:
+    """Errors of models against what a simulated second of them costs, the chosen one ringed."""
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(7.2, 4.2), layout="constrained")
         axes = figure.subplots()
-        groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
-        for trial in result.trials:
-            point = (1e3 * trial.push.seconds_per_simulated_second, 100.0 * trial.errors.path_max)
-            groups.setdefault((trial.model.rule, trial.model.law), []).append(point)
-        markers = dict(zip(RULES, "osD", strict=True))
-        colours = dict(zip(LAWS, (INK, FAINT, REFERENCE, MODEL), strict=True))
-        for (rule, law), points in sorted(groups.items()):
-            cost, error = zip(*points, strict=True)
-            axes.scatter(cost, error, s=26, marker=markers[rule], color=colours[law], label=f"{rule}, {law}")
-        best = result.best
-        chosen = (1e3 * best.push.seconds_per_simulated_second, 100.0 * best.errors.path_max)
-        axes.scatter([chosen[0]], [chosen[1]], s=120, facecolors="none", edgecolors=INK, linewidths=1.4, label="chosen")
-        cost_axes(axes, result.target_error)
-        axes.set_ylabel("path error [% of peak load]")
+        for name, marker, colour, points in clouds:
+            cost, error = _in_units(points)
+            axes.scatter(cost, error, s=26, marker=marker, color=colour, label=name)
+        cost, error = _in_units([chosen])
+        axes.scatter(cost, error, s=120, facecolors="none", edgecolors=INK, linewidths=1.4, label="chosen")
+        cost_axes(axes, target_error)
+        axes.set_ylabel(ordinate)
         axes.legend(loc="best", fontsize=9)
     return figure
+
+
+def _in_units(points: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
+    """Costs [ms] and errors [%]."""
+    return [1e3 * cost for cost, _ in points], [100.0 * error for _, error in points]
 
 
 def cost_axes(axes: Axes, target_error: float) -> None:

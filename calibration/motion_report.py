@@ -8,13 +8,15 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 
-from calibration.export import settings
-from calibration.figures import FAINT, INK, MODEL, REFERENCE, STYLE, cost_axes
+from calibration.export import outcome, settings, subject
+from calibration.figures import FAINT, MODEL, REFERENCE, STYLE, Cloud, error_against_cost
 from calibration.motion_tuning import HISTORY_SHARE, REFERENCE_MARGIN, MotionCalibration, MotionTrial
 from calibration.sheets import Picture, Report, Sheet, percent
 from calibration.tables import capacity_sheet, in_words, joint_sheet, stepping
-from calibration.versions import versions
 from capacity.units import engineering
+
+#: Of the laws that motions are tried with.
+_COLOURS = {"elastic-plastic": FAINT, "fibre": MODEL}
 
 
 def motion_report(result: MotionCalibration) -> Report:
@@ -117,33 +119,20 @@ def _history(result: MotionCalibration) -> Figure:
 
 def _frontier(result: MotionCalibration) -> Figure:
     """Error of every model tried against what a simulated second of it costs."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(7.2, 4.2), layout="constrained")
-        axes = figure.subplots()
-        for law, colour in (("elastic-plastic", FAINT), ("fibre", MODEL)):
-            points = [_point(trial) for trial in result.trials if trial.model.law == law]
-            if points:
-                costs, errors = zip(*points, strict=True)
-                axes.scatter(costs, errors, s=26, color=colour, label=law)
-        cost, error = _point(result.best)
-        axes.scatter([cost], [error], s=120, facecolors="none", edgecolors=INK, linewidths=1.4, label="chosen")
-        cost_axes(axes, result.target_error)
-        axes.set_ylabel("error of peak and rest [% of peak]")
-        axes.legend(loc="best", fontsize=9)
-    return figure
+    points = {law: [_point(trial) for trial in result.trials if trial.model.law == law] for law in _COLOURS}
+    clouds = [Cloud(law, "o", _COLOURS[law], found) for law, found in points.items() if found]
+    return error_against_cost(clouds, _point(result.best), result.target_error, "error of peak and rest [% of peak]")
 
 
 def _point(trial: MotionTrial) -> tuple[float, float]:
-    return 1e3 * trial.seconds_per_simulated_second, 100.0 * trial.errors.worst
+    return trial.seconds_per_simulated_second, trial.errors.worst
 
 
 def motion_object(result: MotionCalibration) -> dict[str, Any]:
     """The calibration as one object for JSON; SI units."""
     reference, best = result.reference, result.best
     return {
-        "scene": result.name,
-        "title": result.scene.title,
-        "capacity": {name: capacity.values() for name, capacity in result.capacity.items()},
+        **subject(result),
         "reference": {
             "method": reference.method,
             "node": reference.node,
@@ -179,10 +168,5 @@ def motion_object(result: MotionCalibration) -> dict[str, Any]:
             }
             for trial in result.trials
         ],
-        "failures": [{**settings(failure.model), "reason": failure.reason} for failure in result.failures],
-        "target_error": result.target_error,
-        "target_met": result.target_met,
-        "limit": result.limit,
-        "remarks": list(result.remarks),
-        "versions": versions(),
+        **outcome(result),
     }

@@ -5,10 +5,10 @@ import math
 from pathlib import Path
 
 import pytest
+from command_line import ductile
 from hypothesis import given
 from hypothesis import strategies as st
 
-from calibration.cli import main
 from capacity import InputError, catalogue, parse_material, parse_section, torsion_capacity
 from capacity.behaviour import (
     Bridge,
@@ -23,12 +23,6 @@ from capacity.behaviour import (
 from capacity.torsion import heap_volume, plastic_torsion_modulus
 
 RAMP_INERTIA, RAMP_WEIGHT = 58320.0, 2160.0 * 10.0 * 9.0
-
-
-def ductile(*tokens: str) -> int:
-    with pytest.raises(SystemExit) as end:
-        main(tokens)
-    return int(end.value.code or 0)
 
 
 def test_the_papers_ramp() -> None:

@@ -10,16 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from command_line import ductile
 from conftest import CASES
 
-from calibration.cli import main
 from scene import builtin_text
-
-
-def ductile(*tokens: str) -> int:
-    with pytest.raises(SystemExit) as end:
-        main(tokens)
-    return int(end.value.code or 0)
 
 
 @pytest.fixture(scope="module")

@@ -6,17 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command_line import ductile
 
 from calibration import calibrate
-from calibration.cli import main
 from calibration.export import calibration_object
 from scene import load_scene
-
-
-def ductile(*tokens: str) -> int:
-    with pytest.raises(SystemExit) as end:
-        main(tokens)
-    return int(end.value.code or 0)
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pymunk
 import pytest
+from command_line import ductile
 from frames import propped, two_spans
 
-from calibration.cli import main
 from calibration.engines.catalogue import ENGINES
 from calibration.engines.export import Export, export
 from calibration.engines.handover import LAW, JointTerms, hand_over
@@ -24,12 +24,6 @@ from sim import Model
 
 CANTILEVER = load_scene("cantilever")
 M_MAX = 29375.0  # N m: b h² fy / 4
-
-
-def ductile(*tokens: str) -> int:
-    with pytest.raises(SystemExit) as end:
-        main(tokens)
-    return int(end.value.code or 0)
 
 
 def handed(scene: Scene, engine: str, dt: float, joints: int | None = None, iterations: int = 30) -> Export:

@@ -7,9 +7,9 @@ from typing import Any
 
 import meshio
 import pytest
+from command_line import ductile
 
 from calibration import reference_command
-from calibration.cli import main
 from calibration.result_cache import content_key
 from scene import builtin_text, parse_scene
 
@@ -18,12 +18,6 @@ from scene import builtin_text, parse_scene
 def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.chdir(tmp_path)
-
-
-def ductile(*tokens: str) -> int:
-    with pytest.raises(SystemExit) as end:
-        main(tokens)
-    return int(end.value.code or 0)
 
 
 def test_json_and_files(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

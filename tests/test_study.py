@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from command_line import ductile
 from dying import Task, work
 
-from calibration.cli import main
 from calibration.study.executors import Workers, local_processes, workers
 from calibration.study.hard_cases import let_down
 from calibration.study.journal import NAME, Journal, point_keys
@@ -30,12 +30,6 @@ from sim import Model
 
 ROOT = Path(__file__).parent.parent
 POINTS = model_points(Choices(rules=("lobatto",), joints=(2, 3, 4), laws=("fibre",), dt=(1 / 60,), stock=()))
-
-
-def ductile(*tokens: str) -> int:
-    with pytest.raises(SystemExit) as end:
-        main(tokens)
-    return int(end.value.code or 0)
 
 
 def test_a_process_that_dies_loses_nothing(tmp_path: Path) -> None:

@@ -85,14 +85,17 @@ class MemberJoints:
         """A joint of a member, at the world position ``at`` [m], free of force as its bodies lie."""
         c, s, _ = self.scene.axis(name)
         k = law.elastic_tangent()
+        turn, length = 0.5, place.length
+        if k[5] == 0.0:  # a hinge stands for no arc, and its axes stay with the member
+            turn, length = float(place.position == 0.0), 0.0
         return self._apart(
             DuctileJoint(
                 *between,
                 at,
                 law,
                 direction=math.atan2(s, c),
-                turn=0.5,
-                length=place.length,
+                turn=turn,
+                length=length,
                 damping=(self.model.damping * k[0], self.model.damping * k[3], self.model.damping * k[5]),
                 limits=self._limits.get(name, NO_LIMITS),
                 scheme=self.model.scheme,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from capacity import Capacity, FacetSurface, Interaction
 from scene import Member, Scene
 from sim.laws import LAWS, ElasticPlastic, FibreSection, Law, RigidPlastic, section_law
@@ -41,6 +43,15 @@ class MemberLaws:
         model, shear = self._model.of(name), self._shear(name, c) / length
         Q_max = c.Q_max if self._model.shear_yields else math.inf
         if pinned:
+            if model.law == "fibre":  # all at the axis: they harden under N as those of the other joints do
+                fibres = self._fibre(member, model.fibres)
+                return replace(
+                    fibres,
+                    length=length,
+                    y=np.zeros_like(fibres.y),
+                    shear_stiffness=shear,
+                    capacity=(c.N_max, Q_max, 0.0),
+                )
             if model.law == "rigid-plastic":
                 k = RigidPlastic.of_section(c, length).stiffness
                 return RigidPlastic((c.N_max, c.Q_max, 0.0), (k[0], k[1], 0.0))

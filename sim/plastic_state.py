@@ -28,7 +28,8 @@ def residual(law: Law, state: np.ndarray) -> np.ndarray:
         return np.array(state)
     stiff, y, strain = law.youngs_modulus * law.area, law.y, state[1:]
     axial = np.array([[stiff.sum(), -(stiff * y).sum()], [-(stiff * y).sum(), (stiff * y**2).sum()]])
-    mean, curvature = np.linalg.solve(axial, [(stiff * strain).sum(), -(stiff * y * strain).sum()])
+    # Of a hinge, whose fibres all lie at the axis, the curvature is nothing; solving would not do.
+    mean, curvature = np.linalg.lstsq(axial, [(stiff * strain).sum(), -(stiff * y * strain).sum()])[0]
     return np.array([law.length * mean, state[0], law.length * curvature])
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +24,9 @@ from sim.structure import SolverError
 #: Euler scheme damps.
 DURATION = 4.0
 _EASE = 0.1
+# Before it turns or ends, a push waits until the node is this near to where it shall be, as a share of the whole way;
+# at most so long, as a share of the time that the way took.
+_NEAR, _LONGEST_WAIT = 1e-4, 0.5
 # A push of which more steps than this share found no solution is none.
 _MOST_UNCONVERGED = 0.02
 
@@ -103,7 +106,7 @@ def push_over(
     model : Model
     distances : (k,) float
         Distances of the pusher one after the other, from 0 [m]; each gets about an equal share of the time, those at
-        a turn a larger one; every way from one turn to the next takes `DURATION`.
+        a turn a larger one; every way from one turn to the next takes `DURATION`, and what the node then still needs.
     watch : callable
         Told the finished share of the push, 0 to 1.
     second_order : float
@@ -124,36 +127,38 @@ def push_over(
     turns = [0, *(1 + np.flatnonzero(np.diff(np.sign(np.diff(distances))))).tolist(), len(distances) - 1]
     legs = [distances[a : b + 1] for a, b in itertools.pairwise(turns)]
     steps_a_leg = max(1, round(DURATION / model.dt))
-    steps = steps_a_leg * len(legs)
-    travel = np.concatenate([_eased(leg, steps_a_leg) for leg in legs])
-    driver = LoadDriver(assembly, scene.push.node, scene.push_direction(), float(np.abs(distances).max()))
+    planned = steps_a_leg * len(legs)
+    way = float(np.abs(distances).max())
+    driver = LoadDriver(assembly, scene.push.node, scene.push_direction(), way)
     newton_before = assembly.structure.newton_steps
-    displacement, load = np.empty(steps), np.empty(steps)
+    taken, factors, ends = [0.0], [0.0], [0]
     bearing: list[tuple[tuple[DuctileJoint, ...], np.ndarray]] = []
     seconds = 0.0
-    for k in range(steps):
-        driver.aim(travel[k], model.dt)
-        moments.act(model.dt, factor=driver.factor)
-        assembly.act()
-        started = time.thread_time()
-        assembly.space.step(model.dt)
-        seconds += time.thread_time() - started
-        driver.read(model.dt)
-        displacement[k], load[k] = driver.displacement, driver.factor
-        structure = assembly.structure
-        bearing.append((assembly.joints, structure.force))
-        if structure.unconverged > _MOST_UNCONVERGED * steps:
-            count = structure.unconverged
-            raise SolverError(
-                f"{count} of the first {k + 1} steps found no solution; shorten them, or take fewer joints"
-            )
-        if k % 64 == 0:
-            watch(k / steps)
-    displacement, load = np.append(0.0, displacement), np.append(0.0, load)
+    for leg in legs:
+        for wanted in _wanted(leg, steps_a_leg, driver, _NEAR * way):
+            driver.aim(wanted, model.dt)
+            moments.act(model.dt, factor=driver.factor)
+            assembly.act()
+            started = time.thread_time()
+            assembly.space.step(model.dt)
+            seconds += time.thread_time() - started
+            driver.read(model.dt)
+            taken.append(driver.displacement)
+            factors.append(driver.factor)
+            structure = assembly.structure
+            bearing.append((assembly.joints, structure.force))
+            if structure.unconverged > _MOST_UNCONVERGED * planned:
+                count, so_far = structure.unconverged, len(bearing)
+                raise SolverError(
+                    f"{count} of the first {so_far} steps found no solution; shorten them, or take fewer joints"
+                )
+            if len(bearing) % 64 == 0:
+                watch(min(1.0, len(bearing) / planned))
+        ends.append(len(bearing))
+    displacement, load, steps = np.array(taken), np.array(factors), len(bearing)
     passed = [load[:1]]
-    for i, leg in enumerate(legs):
-        part = slice(i * steps_a_leg, (i + 1) * steps_a_leg + 1)
-        passed.append(_passed(leg, displacement[part], load[part]))
+    for leg, (first, last) in zip(legs, itertools.pairwise(ends), strict=True):
+        passed.append(_passed(leg, displacement[first : last + 1], load[first : last + 1]))
     return Push(
         displacement=displacement,
         load=load,
@@ -181,6 +186,15 @@ def _borne(joints: tuple[DuctileJoint, ...], bearing: list[tuple[tuple[DuctileJo
         force[k : k + len(rows), [c for _, c in own]] = rows[:, [i for i, _ in own]]
         k += len(rows)
     return force
+
+
+def _wanted(leg: np.ndarray, steps: int, driver: LoadDriver, near: float) -> Iterator[float]:
+    """Where the node shall be after each step: along ``leg`` in ``steps``, then at its end until it is there."""
+    yield from _eased(leg, steps)
+    for _ in range(round(_LONGEST_WAIT * steps)):
+        if abs(driver.displacement - leg[-1]) <= near:
+            return
+        yield leg[-1]
 
 
 def _eased(leg: np.ndarray, steps: int) -> np.ndarray:

@@ -30,12 +30,11 @@ class Successor:
     state: np.ndarray
     kink: np.ndarray
     result: np.ndarray
-    length: float
 
     @classmethod
     def new(cls, maker: MemberJoints, name: str, rule: Rule, i: int) -> Successor:
         law = maker.law(name, rule, i)
-        return cls(law, law.state(), np.zeros(3), np.zeros(at.RESULT_WORDS), maker.place(name, rule, i).length)
+        return cls(law, law.state(), np.zeros(3), np.zeros(at.RESULT_WORDS))
 
 
 def state_of(joint: DuctileJoint) -> np.ndarray:
@@ -74,7 +73,9 @@ def hand_on(joint: DuctileJoint, result: np.ndarray, to: Sequence[tuple[Successo
             continue
         kept = np.zeros(3)
         if share == 1.0 and type(own.law) is type(joint.law) and len(own.state) == len(state):
-            own.state = stretched(own.law, state, own.length / (24.0 * joint.geometry[at.ARC]))
+            # Joints of a member give way along it in proportion to the length that they stand for.
+            ratio = joint.law.elastic_tangent()[0] / own.law.elastic_tangent()[0]
+            own.state = stretched(own.law, state, ratio)
             kept = residual(own.law, own.state)
         own.kink += share * rest - kept
         own.result[sums] += share * result[sums]

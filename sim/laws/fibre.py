@@ -79,7 +79,8 @@ def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
         rotation -= area * e * y * flow
         ea += area * e
         ei += area * e * y * y
-    r[2], r[3], r[4] = length * stretch / ea, 0.0, length * rotation / ei
+    r[2], r[3] = length * stretch / ea, 0.0
+    r[4] = length * rotation / ei if ei > 0.0 else 0.0
     shear = head[1] * (q[1] - p[0])
     held = min(max(shear, -head[2]), head[2])
     if held != shear:

@@ -74,7 +74,7 @@ class Tables:
                 at.DAMPING: np.array([j.damping for j in joints], dtype=float),
                 at.LIMITS: np.array(limits, dtype=float),
                 at.SCALE: np.ones(n),
-                at.SCRATCH: np.zeros(laws[:, 4].max()),
+                at.SCRATCH: np.zeros(at.SCRATCH_STATE + laws[:, 4].max()),
                 at.ACTIVE: np.ones(n, dtype=np.int64),
                 at.COLUMN_START: pattern.column_start,
                 at.COLUMN_ROWS: pattern.column_rows,
@@ -98,6 +98,7 @@ class Tables:
         self[at.LAST_POSITION][:] = np.nan
         self.control[[at.BODIES, at.MOVING, at.JOINTS, at.LOWER]] = len(bodies), moving, n, below
         self.control[at.FAULT] = -1
+        self.control[at.DAMPED] = int(self[at.DAMPING].any())
         self.control[at.BREAKABLE] = int(np.isfinite(self[at.LIMITS][:, :3]).any())
         self.control[at.HASH_LENGTH] = len(keys)
         self.make_room(_ROOM)
@@ -106,8 +107,9 @@ class Tables:
         return self._arrays[word]
 
     def _hold(self, arrays: dict[int, np.ndarray]) -> None:
-        self._arrays |= arrays
-        for word, array in arrays.items():
+        held = dict(zip(arrays, in_one_block(list(arrays.values())), strict=True))
+        self._arrays |= held
+        for word, array in held.items():
             self.control[word] = array.ctypes.data
 
     def make_room(self, contacts: int) -> None:
@@ -154,7 +156,29 @@ class Tables:
 # The plastic state is kept beside these. Gradient and response of the last step weigh the bodies of the next.
 _OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.GRADIENT, at.RESPONSE, at.RESULT)
 _KEPT = (*_OF_JOINTS, at.SETTINGS, at.LEDGER, at.LAST_VELOCITY, at.LAST_POSITION, at.SHIFT)
-_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.ROOM)
+_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.SHIFTED, at.ROOM)
+
+
+# A cache line in words of 8 bytes, and how many lines of distance keep arrays of equal length from lying alike in their
+# pages.
+_LINE, _APART = 8, 5
+
+
+def in_one_block(arrays: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """Copies of arrays of 8-byte numbers in one block of memory, each beginning with a cache line.
+
+    A large block comes in large pages, which a processor finds its way in without looking pages up; and arrays that all
+    begin with a page get in each other's way in its cache.
+    """
+    starts = np.cumsum([0, *(_LINE * (-(-array.size // _LINE) + _APART) for array in arrays)])
+    block = np.zeros(starts[-1] + _LINE)
+    block = block[-(block.ctypes.data // 8) % _LINE :]
+    copies = []
+    for start, array in zip(starts[:-1].tolist(), arrays, strict=True):
+        copy = block[start : start + array.size].view(array.dtype).reshape(array.shape)
+        copy[...] = array
+        copies.append(copy)
+    return copies
 
 
 def _joined(pieces: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

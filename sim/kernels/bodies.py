@@ -4,6 +4,7 @@ import math
 
 from sim.chipmunk import (
     ANGLE,
+    ARBITERS,
     BIAS_SPIN,
     BIAS_VX,
     BODY_FULL_WORDS,
@@ -20,9 +21,12 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.inertia import give_back, mass_of, moment_of
+from sim.kernels.inertia import give_back, mass_of, moment_of, weigh
 from sim.kernels.layout import INERTIA_I
-from sim.memory import floats, kernel
+from sim.memory import floats, integers, kernel
+
+# A movement without velocity below this [m, rad], over 1 + |x|, is rounding.
+_UNMOVED = 1e-12
 
 
 @kernel
@@ -45,6 +49,68 @@ def load_velocities(t, velocity):  # type: ignore[no-untyped-def]
     for i in range(t[at.BODIES]):
         b = floats(body_at[i], BODY_WORDS)
         velocity[i, 0], velocity[i, 1], velocity[i, 2] = b[VX], b[VX + 1], b[SPIN]
+
+
+@kernel
+def arrive(t, h):  # type: ignore[no-untyped-def]
+    """Find out how and where the bodies begin a step of length ``h``: weights, velocities, movement without velocity.
+
+    Chipmunk has just moved the bodies. Where one was given another velocity since the last step, by an impulse say, it
+    was moved with that before any joint could resist; it is put to where its old velocity would have taken it, so that
+    the impulse acts when the forces do.
+
+    Movement since the last step that velocities do not explain is to take out overlap, or by hand. Returns the fastest
+    spin of those that move, and whether any touches something.
+    """
+    body_at, shift, moving = views.body_at(t), views.shift(t), t[at.MOVING]
+    start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
+    position, written = views.per_body(t, at.LAST_POSITION), views.per_body(t, at.WRITTEN)
+    external, velocity, weight = views.per_body(t, at.EXTERNAL), views.per_body(t, at.VELOCITY), views.weight(t)
+    fastest, touching, pushed, shifted = 0.0, False, t[at.SHIFTED] == 1, False
+    for i in range(t[at.BODIES]):
+        b = floats(body_at[i], BODY_WORDS)
+        if i < moving:
+            x, y, w = b[VX] - last[i, 0], b[VX + 1] - last[i, 1], b[SPIN] - last[i, 2]
+            if x != 0.0 or y != 0.0 or w != 0.0:
+                move(body_at[i], -h * x, -h * y, -h * w)
+            fastest = max(fastest, abs(b[SPIN]))
+            weigh(weight, i, b)
+            touching = touching or integers(body_at[i], BODY_FULL_WORDS)[ARBITERS] != 0
+        for axis in range(3):
+            v = b[SPIN] if axis == 2 else b[VX + axis]
+            start[i, axis], velocity[i, axis], written[i, axis], external[i, axis] = v, v, v, 0.0
+            by_contacts = 0.0
+            if pushed:
+                # Until now it held the pseudo-velocity with which the last step ended.
+                by_contacts = h * shift[i, axis]
+                shift[i, axis], shift[i, 3 + axis] = by_contacts, 0.0
+                shifted = shifted or by_contacts != 0.0
+            place = b[ANGLE] if axis == 2 else b[X + axis]
+            rest = place - (position[i, axis] + h * last[i, axis] + by_contacts)
+            # A structure that is new does not know where its bodies were.
+            if abs(rest) > _UNMOVED * (1.0 + abs(place)):
+                shift[i, 3 + axis], shifted = rest, True
+    t[at.SHIFTED] = 1 if shifted else 0
+    return fastest, touching
+
+
+@kernel
+def depart(t):  # type: ignore[no-untyped-def]
+    """Note how and where the bodies end a step: velocities, pseudo-velocities and positions.
+
+    Shifts are left alone where there are none, and none have been; they are all zero then.
+    """
+    body_at, shift, shifted = views.body_at(t), views.shift(t), t[at.SHIFTED] == 1
+    last, position = views.per_body(t, at.LAST_VELOCITY), views.per_body(t, at.LAST_POSITION)
+    for i in range(t[at.BODIES]):
+        b = floats(body_at[i], BODY_FULL_WORDS)
+        last[i, 0], last[i, 1], last[i, 2] = b[VX], b[VX + 1], b[SPIN]
+        position[i, 0], position[i, 1], position[i, 2] = b[X], b[X + 1], b[ANGLE]
+        x, y, w = b[BIAS_VX], b[BIAS_VX + 1], b[BIAS_SPIN]
+        shifted = shifted or x != 0.0 or y != 0.0 or w != 0.0
+        if shifted:
+            shift[i, 0], shift[i, 1], shift[i, 2] = x, y, w
+    t[at.SHIFTED] = 1 if shifted else 0
 
 
 @kernel
@@ -78,9 +144,14 @@ def take_in(t):  # type: ignore[no-untyped-def]
 @kernel
 def write(t):  # type: ignore[no-untyped-def]
     """Give the bodies their velocities."""
-    written = views.per_body(t, at.WRITTEN)
-    give_back(t, views.per_body(t, at.VELOCITY), written)
-    store_velocities(t, written)
+    body_at, velocity, written = views.body_at(t), views.per_body(t, at.VELOCITY), views.per_body(t, at.WRITTEN)
+    for i in range(t[at.MOVING]):
+        b, vx, vy, spin = floats(body_at[i], BODY_WORDS), velocity[i, 0], velocity[i, 1], velocity[i, 2]
+        written[i, 0], written[i, 1], written[i, 2] = vx, vy, spin
+        b[VX], b[VX + 1], b[SPIN] = vx, vy, spin
+    if t[at.TURNING] == 1 and t[at.FREE] == 1:
+        give_back(t, velocity, written)
+        store_velocities(t, written)
 
 
 @kernel
@@ -99,12 +170,3 @@ def load_positions(t, position):  # type: ignore[no-untyped-def]
     for i in range(t[at.BODIES]):
         b = floats(body_at[i], BODY_WORDS)
         position[i, 0], position[i, 1], position[i, 2] = b[X], b[X + 1], b[ANGLE]
-
-
-@kernel
-def load_pseudo_velocities(t, velocity):  # type: ignore[no-untyped-def]
-    """Copy the bodies' pseudo-velocities into the first columns of ``velocity``."""
-    body_at = views.body_at(t)
-    for i in range(t[at.BODIES]):
-        b = floats(body_at[i], BODY_FULL_WORDS)
-        velocity[i, 0], velocity[i, 1], velocity[i, 2] = b[BIAS_VX], b[BIAS_VX + 1], b[BIAS_SPIN]

@@ -25,6 +25,7 @@ from sim.kernels.layout import (
     BETA,
     COMMIT_WORDS,
     DELTA,
+    FLOW,
     LEDGER_CONTACT,
     LEDGER_ELASTIC,
     LEDGER_EXTERNAL,
@@ -39,6 +40,9 @@ from sim.kernels.layout import (
     RESULT_PLASTIC,
     RESULT_USED,
     RESULT_VISCOUS,
+    RESULT_WORDS,
+    SCRATCH_Q,
+    SCRATCH_STATE,
     STEP,
 )
 from sim.kernels.residual import reach_of
@@ -46,16 +50,16 @@ from sim.memory import call_law, floats, kernel
 
 
 @kernel
-def used(limits, plastic, flow):  # type: ignore[no-untyped-def]
-    """Largest share of a limit used after ``flow``, and the share of the flow that the limit leaves room for."""
+def used(limits, result, whole, out):  # type: ignore[no-untyped-def]
+    """Largest share of a limit used after ``whole`` times a law's flow, and the share of that there is room for."""
     share, room = 0.0, 1.0
     for mode in range(3):
-        limit = limits[mode]
+        limit, before, added = limits[mode], result[RESULT_PLASTIC + 1 + mode], whole * abs(out[FLOW + mode])
+        if limit == np.inf:
+            continue
         if mode == 0:
-            before = plastic[0] + (plastic[1] if limits[3] != 0.0 else 0.0)
-            added = abs(flow[0]) if flow[0] > 0.0 or limits[3] != 0.0 else 0.0
-        else:
-            before, added = plastic[mode + 1], abs(flow[mode])
+            before = result[RESULT_PLASTIC] + (before if limits[3] != 0.0 else 0.0)
+            added = added if out[FLOW] > 0.0 or limits[3] != 0.0 else 0.0
         left = limit - before
         if added > 0.0:
             share = max(share, (before + added) / limit) if limit > 0.0 else 1.0
@@ -79,24 +83,19 @@ def weaken(t):  # type: ignore[no-untyped-def]
     joint_bodies, laws, limits = views.joint_bodies(t), views.laws(t), views.limits(t)
     active, gradient, deformation = views.active(t), views.gradient(t), views.per_joint(t, at.DEFORMATION)
     velocity, result, scale = views.per_body(t, at.VELOCITY), views.result(t), views.scale(t)
-    reach, whole = reach_of(t), flow_share(t)
-    q, out = np.empty(3), np.empty(COMMIT_WORDS)
-    change = 0.0
+    q, trial = t[at.SCRATCH] + 8 * SCRATCH_Q, t[at.SCRATCH] + 8 * SCRATCH_STATE
+    out, place = floats(t[at.SCRATCH], COMMIT_WORDS), floats(q, 3)
+    reach, whole, change = reach_of(t), flow_share(t), 0.0
     for k in range(t[at.JOINTS]):
         limit = limits[k]
         if active[k] == 0 or (limit[0] == np.inf and limit[1] == np.inf and limit[2] == np.inf):
             continue
         x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
-        q[0], q[1], q[2] = (
-            deformation[k, 0] + reach * x,
-            deformation[k, 1] + reach * y,
-            deformation[k, 2] + reach * z,
-        )
-        state, scratch = floats(laws[k, 3], laws[k, 4]), floats(t[at.SCRATCH], laws[k, 4])
-        for i in range(laws[k, 4]):
-            scratch[i] = state[i]
-        call_law(laws[k, 1], laws[k, 2], t[at.SCRATCH], q.ctypes.data, out.ctypes.data)
-        _, room = used(limit, result[k, RESULT_PLASTIC:], whole * out[2:])
+        place[0], place[1] = deformation[k, 0] + reach * x, deformation[k, 1] + reach * y
+        place[2] = deformation[k, 2] + reach * z
+        copy(laws[k, 3], trial, laws[k, 4])
+        call_law(laws[k, 1], laws[k, 2], trial, q, t[at.SCRATCH])
+        _, room = used(limit, result[k], whole, out)
         if room < 1.0 or scale[k] < 1.0:
             # Once a joint is about to break it stays so for this step, or it would flicker.
             new = min(room, 0.999999)
@@ -119,7 +118,7 @@ def commit(t):  # type: ignore[no-untyped-def]
     scale, result, settings = views.scale(t), views.result(t), views.settings(t)
     ledger, moving = views.ledger(t), t[at.MOVING]
     h, reach, whole = settings[STEP], reach_of(t), flow_share(t)
-    q, out = np.empty(3), np.empty(COMMIT_WORDS)
+    out, old = floats(t[at.SCRATCH], COMMIT_WORDS), t[at.SCRATCH] + 8 * SCRATCH_STATE
     broke, flowing = 0, 0.0
     external, elastic, contact, viscous, numerical = 0.0, 0.0, 0.0, 0.0, 0.0
     plastic, to_come = ledger[LEDGER_TO_COME], 0.0
@@ -135,28 +134,24 @@ def commit(t):  # type: ignore[no-untyped-def]
         x, y, z = rates(gradient, k, velocity, ia, velocity, ib)
         x0, y0, z0 = rates(gradient, k, start, ia, start, ib)
         d, c = deformation[k], damping[k]
-        q[0], q[1], q[2] = d[0] + reach * x, d[1] + reach * y, d[2] + reach * z
+        r[0], r[1], r[2] = d[0] + reach * x, d[1] + reach * y, d[2] + reach * z
         for i in range(3):
-            r[i] = q[i]
             r[RESULT_FORCE + i] = -impulse[k, i] / h
-        state, old = floats(laws[k, 3], laws[k, 4]), floats(t[at.SCRATCH], laws[k, 4])
         if whole != 1.0:
-            for i in range(laws[k, 4]):
-                old[i] = state[i]
-        call_law(laws[k, 1], laws[k, 2], laws[k, 3], q.ctypes.data, out.ctypes.data)
+            copy(laws[k, 3], old, laws[k, 4])
+        call_law(laws[k, 1], laws[k, 2], laws[k, 3], t[at.RESULT] + 8 * RESULT_WORDS * k, t[at.SCRATCH])
         if whole != 1.0:
-            for i in range(laws[k, 4]):
-                state[i] = old[i] + whole * (state[i] - old[i])
-            for i in range(1, COMMIT_WORDS):
-                out[i] *= whole
-        share, room = used(limits[k], r[RESULT_PLASTIC:], out[2:])
-        at_end, lost, second_half = out[0], scale[k] * out[1], 0.5 * scale[k] * out[1]
+            go_all_the_way(laws[k, 3], old, laws[k, 4], whole)
+        at_end, work = out[0], whole * out[1]
+        flow_u, flow_v, flow_turn = whole * out[FLOW], whole * out[FLOW + 1], whole * out[FLOW + 2]
+        share, room = used(limits[k], r, whole, out) if t[at.BREAKABLE] == 1 else (0.0, 1.0)
+        lost, second_half = scale[k] * work, 0.5 * scale[k] * work
         if settings[BETA] != 0.0:
             xl, yl, zl = rates(gradient, k, last, ia, last, ib)
-            at_end += half_a_step_on(t, k, xl, yl, zl, x, y, z, (1.0 - 1.0 / whole) * out[2:])
+            at_end += half_a_step_on(t, k, xl, yl, zl, x, y, z, whole - 1.0, out)
             second_half = 0.0
         x, y, z = 0.5 * (x0 + x), 0.5 * (y0 + y), 0.5 * (z0 + z)
-        damped = h * (c[0] * x * x + c[1] * y * y + c[2] * z * z)
+        damped = h * (c[0] * x * x + c[1] * y * y + c[2] * z * z) if t[at.DAMPED] == 1 else 0.0
         given = 0.5 * (r[RESULT_BEFORE] + r[RESULT_ELASTIC]) - damped
         given -= impulse[k, 0] * x + impulse[k, 1] * y + impulse[k, 2] * z
         if ia >= moving or ib >= moving:
@@ -173,9 +168,9 @@ def commit(t):  # type: ignore[no-untyped-def]
             r[RESULT_ELASTIC] += by_contacts + by_hand
         at_start = r[RESULT_ELASTIC] if settings[BETA] == 0.0 else at_end
         r[RESULT_USED] = min(share, 1.0)
-        r[RESULT_PLASTIC + (0 if out[2] > 0.0 else 1)] += abs(out[2])
-        r[RESULT_PLASTIC + 2] += abs(out[3])
-        r[RESULT_PLASTIC + 3] += abs(out[4])
+        r[RESULT_PLASTIC + (0 if flow_u > 0.0 else 1)] += abs(flow_u)
+        r[RESULT_PLASTIC + 2] += abs(flow_v)
+        r[RESULT_PLASTIC + 3] += abs(flow_turn)
         if scale[k] < 1.0 or room < 1.0:
             # What was stored elastically, and what the joint still took of the step's share, is lost with it.
             lost += r[RESULT_ELASTIC] + scale[k] * (at_end - r[RESULT_ELASTIC])
@@ -187,7 +182,7 @@ def commit(t):  # type: ignore[no-untyped-def]
         r[RESULT_BEFORE], r[RESULT_ELASTIC] = at_start, at_end
         r[RESULT_DISSIPATED] += lost
         r[RESULT_VISCOUS] += damped
-        flowing += abs(out[2]) + abs(out[3]) + abs(out[4])
+        flowing += abs(flow_u) + abs(flow_v) + abs(flow_turn)
         elastic += stored
         plastic += lost - second_half
         to_come += second_half
@@ -205,16 +200,33 @@ def commit(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def half_a_step_on(t, k, x0, y0, z0, x, y, z, flow):  # type: ignore[no-untyped-def]
+def copy(source, target, count):  # type: ignore[no-untyped-def]
+    """Copy so many numbers from one address to another."""
+    there, here = floats(source, count), floats(target, count)
+    for i in range(count):
+        here[i] = there[i]
+
+
+@kernel
+def go_all_the_way(state, old, count, whole):  # type: ignore[no-untyped-def]
+    """Let a state that a law took from ``old`` to where it is now go ``whole`` times that way."""
+    now, before = floats(state, count), floats(old, count)
+    for i in range(count):
+        now[i] = before[i] + whole * (now[i] - before[i])
+
+
+@kernel
+def half_a_step_on(t, k, x0, y0, z0, x, y, z, more, out):  # type: ignore[no-untyped-def]
     """Elastic energy of joint k half a step after its position, where the velocities are, less that at q*.
 
-    That is s·dq + ½ dq·K dq for dq = q_n + ½ h q̇₁ - q* less the plastic ``flow`` after q*, with its rates of
-    deformation q̇₀ and q̇₁ before and after the step.
+    That is s·dq + ½ dq·K dq for dq = q_n + ½ h q̇₁ - q* less the plastic flow after q*, which is ``more`` times that
+    before it, with its rates of deformation q̇₀ and q̇₁ before and after the step.
     """
     damping, settings, response, stiffness = views.damping(t), views.settings(t), views.response(t), views.stiffness(t)
     h, s, stiff = settings[STEP], response[k], stiffness[k]
     lag, lead = lag_of(settings), 0.5 * h - reach_of(t)
-    u, v, turn = lag * x0 + lead * x - flow[0], lag * y0 + lead * y - flow[1], lag * z0 + lead * z - flow[2]
+    u, v = lag * x0 + lead * x - more * out[FLOW], lag * y0 + lead * y - more * out[FLOW + 1]
+    turn = lag * z0 + lead * z - more * out[FLOW + 2]
     linear = (s[0] - damping[k, 0] * x) * u + (s[1] - damping[k, 1] * y) * v + (s[2] - damping[k, 2] * z) * turn
     square = stiff[0] * u * u + stiff[3] * v * v + stiff[5] * turn * turn
     mixed = stiff[1] * u * v + stiff[2] * u * turn + stiff[4] * v * turn

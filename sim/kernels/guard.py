@@ -46,15 +46,12 @@ _ROUNDING, _BOUND, _TURN = 1e-13, 0.1, 0.25
 
 
 @kernel
-def choose_scheme(t):  # type: ignore[no-untyped-def]
-    """Time integration of a step that begins: the one that is wanted, or implicit Euler."""
+def choose_scheme(t, spin):  # type: ignore[no-untyped-def]
+    """Time integration of a step at whose start no body turns faster than ``spin``: that wanted, or implicit Euler."""
     settings, ledger = views.settings(t), views.ledger(t)
     largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
     least = -_BOUND * largest if settings[BETA] != 0.0 else 0.0
-    implicit = settings[WANTED_BETA] == 0.0 or ledger[LEDGER_NUMERICAL] < least
-    start, turn = views.per_body(t, at.START_VELOCITY), _TURN / settings[STEP]
-    for i in range(t[at.MOVING]):
-        implicit = implicit or abs(start[i, 2]) > turn
+    implicit = settings[WANTED_BETA] == 0.0 or ledger[LEDGER_NUMERICAL] < least or spin * settings[STEP] > _TURN
     settings[BETA] = 0.0 if implicit else settings[WANTED_BETA]
     settings[DELTA] = 1.0 if implicit and settings[WANTED_BETA] != 0.0 else settings[WANTED_DELTA]
 

@@ -20,7 +20,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.kinematics import impulses, turned
 from sim.kernels.layout import ANCHOR_A, INERTIA_I, INERTIA_M, INVERSE_I, INVERSE_M, TANGENT
-from sim.memory import floats, kernel
+from sim.memory import clear, floats, kernel
 
 # Stands for an infinite mass or moment of inertia, so that no 0 · ∞ arises.
 _IMMOVABLE = 1e30
@@ -39,23 +39,40 @@ def moment_of(b):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def weigh(t):  # type: ignore[no-untyped-def]
-    """Masses of the step; needs gradient, impulses and responses of the last step, before they are renewed."""
+def weigh(weight, i, b):  # type: ignore[no-untyped-def]
+    """Weight of body i by its struct."""
+    mass, moment = mass_of(b), moment_of(b)
+    weight[i, INERTIA_M], weight[i, INERTIA_I] = mass, moment
+    weight[i, INVERSE_M] = 1.0 / mass if mass < _IMMOVABLE else 0.0
+    weight[i, INVERSE_I] = 1.0 / moment if moment < _IMMOVABLE else 0.0
+
+
+@kernel
+def add_inertia(t):  # type: ignore[no-untyped-def]
+    """Add the geometric stiffness to the weights, and scale the solver's velocities accordingly.
+
+    Needs gradient, impulses and responses of the last step, before they are renewed.
+    """
     joint_bodies, body_at, weight = views.joint_bodies(t), views.body_at(t), views.weight(t)
     gradient, impulse, response = views.gradient(t), views.per_joint(t, at.IMPULSE), views.response(t)
     damping, geometry, settings = views.damping(t), views.geometry(t), views.settings(t)
-    moving, h = t[at.MOVING], settings[at.STEP]
+    excess, velocity = views.per_body(t, at.SOLUTION), views.per_body(t, at.VELOCITY)
+    moving, h, any_pulls = t[at.MOVING], settings[at.STEP], False
     reach = h * (settings[at.BETA] + settings[at.DELTA])
-    for i in range(moving):
-        weight[i, INERTIA_I] = 0.0
+    t[at.TURNING] = 0
     for k in range(t[at.JOINTS]):
         x, y = impulse[k, 0], impulse[k, 1]
         if x == 0.0 and y == 0.0:
             continue
-        bending = h * h * (response[k, TANGENT + 5] - damping[k, 2] / reach)
+        bending = h * h * response[k, TANGENT + 5]
+        if t[at.DAMPED] == 1:
+            bending -= h * h * damping[k, 2] / reach
         arms = abs(geometry[k, 0]) + abs(geometry[k, 1]) + abs(geometry[k, 2]) + abs(geometry[k, 3])
         if h * (abs(x) + abs(y)) * arms <= bending:
             continue  # it cannot outweigh what bends against it
+        if not any_pulls:
+            any_pulls = True
+            clear(excess)
         px, py, _, _ = impulses(gradient, k, x, y, 0.0)
         for side in range(2):
             i = joint_bodies[k, side]
@@ -63,27 +80,22 @@ def weigh(t):  # type: ignore[no-untyped-def]
                 b = floats(body_at[i], BODY_WORDS)
                 rx, ry = turned(b, geometry[k, ANCHOR_A + 2 * side], geometry[k, ANCHOR_A + 2 * side + 1])
                 outwards = h * (px * rx + py * ry)
-                weight[i, INERTIA_I] += (outwards if side == 1 else -outwards) - bending
-    t[at.TURNING] = 0
+                excess[i, 2] += (outwards if side == 1 else -outwards) - bending
+    if not any_pulls:
+        return
     for i in range(moving):
-        b = floats(body_at[i], BODY_WORDS)
-        mass, moment = mass_of(b), moment_of(b)
-        if weight[i, INERTIA_I] > moment:
-            moment = weight[i, INERTIA_I]
+        moment = excess[i, 2]
+        if moment > weight[i, INERTIA_I]:
+            velocity[i, 2] *= weight[i, INERTIA_I] / moment
+            weight[i, INERTIA_I] = moment
+            weight[i, INVERSE_I] = 1.0 / moment if moment < _IMMOVABLE else 0.0
             t[at.TURNING] = 1
-        weight[i, INERTIA_M], weight[i, INERTIA_I] = mass, moment
-        weight[i, INVERSE_M] = 1.0 / mass if mass < _IMMOVABLE else 0.0
-        weight[i, INVERSE_I] = 1.0 / moment if moment < _IMMOVABLE else 0.0
 
 
 @kernel
 def give_back(t, velocity, out):  # type: ignore[no-untyped-def]
-    """Velocities with the moment of the added inertia given back, if the structure is free; ``out`` may be new."""
+    """Give the moment of the inertia that was added at ``velocity`` back to a free structure's velocities ``out``."""
     body_at, weight, moving = views.body_at(t), views.weight(t), t[at.MOVING]
-    for i in range(moving):
-        out[i, 0], out[i, 1], out[i, 2] = velocity[i, 0], velocity[i, 1], velocity[i, 2]
-    if t[at.TURNING] == 0 or t[at.FREE] == 0:
-        return
     mass, cx, cy = 0.0, 0.0, 0.0
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)

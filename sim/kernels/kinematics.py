@@ -43,15 +43,19 @@ _EPSILON = 2.0**-52
 
 
 @kernel
-def leave_out(t):  # type: ignore[no-untyped-def]
-    """Let go of joints that are no longer in the space; returns whether any joint is tied to a held body."""
+def take_up(t, ratio):  # type: ignore[no-untyped-def]
+    """Let go of joints that are no longer in the space; the others start from ``ratio`` times their last impulses."""
     active, joint_at, joint_bodies = views.active(t), views.joint_at(t), views.joint_bodies(t)
+    impulse, scale = views.per_joint(t, at.IMPULSE), views.scale(t)
     moving, held = t[at.MOVING], False
     for k in range(t[at.JOINTS]):
         if integers(joint_at[k], CONSTRAINT_SPACE + 1)[CONSTRAINT_SPACE] == 0:
             active[k] = 0
         held = held or (active[k] != 0 and (joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving))
-    return held
+        for i in range(3):
+            impulse[k, i] *= ratio * active[k]
+        scale[k] = 1.0
+    t[at.FREE] = 0 if held else 1
 
 
 @kernel

@@ -14,19 +14,19 @@ NOTICE, KEY = 10, 11
 # Contacts of this step, room for them, those there was no room for, length of the hash table; whether overlap has
 # been taken out in this step.
 CONTACTS, ROOM, MISSED, HASH_LENGTH, PUSHED_APART = 12, 13, 14, 15, 16
-# Whether any joint has a limit; whether a load pattern acts.
-BREAKABLE, SPREAD = 17, 18
+# Whether any joint has a limit; whether a load pattern acts; whether any joint is damped.
+BREAKABLE, SPREAD, DAMPED = 17, 18, 27
 # Structures in contact with each other are solved together: control table of the one that acts for all of them (0: on
 # its own), and the next one in their list.
 HEAD, NEXT = 19, 20
 # Whether any joint flowed in the last step.
 FLOWING = 24
-# In this step: whether a body was moved by anything but its velocity; whether a body turns with added inertia, and
-# whether nothing holds the structure.
+# In this step: whether a body was moved by anything but its velocity (if none was, all shifts are zero); whether a body
+# turns with added inertia, and whether nothing holds the structure.
 SHIFTED, TURNING, FREE = 21, 22, 23
 # In how many parts the step is taken, and whether loose bodies have been moved ahead with them, see `parts`.
 PARTS, AHEAD = 25, 26
-_FIRST_ADDRESS = 27
+_FIRST_ADDRESS = 28
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -37,7 +37,7 @@ _FIRST_ADDRESS = 27
     DAMPING,  # (joints, 3): force over rate of deformation
     LIMITS,  # (joints, 4)
     SCALE,  # (joints,): share of its force that a joint about to break may still give; 1 otherwise
-    SCRATCH,  # room for one joint's state
+    SCRATCH,  # room for what one law gives, and the deformation and state that it is given
     ACTIVE,  # (joints,) int64: 1 while the joint holds
     COLUMN_START,  # (moving + 1,) int64
     COLUMN_ROWS,  # (lower,) int64
@@ -65,7 +65,7 @@ _FIRST_ADDRESS = 27
     DIAGONAL,  # (moving, 9)
     LOWER_BLOCKS,  # (lower, 9)
     COLUMN,  # (longest column of lower blocks, 9): room to work in
-    RESULT,  # (joints, 15)
+    RESULT,  # (joints, 16)
     BODY_KEYS,  # hash table from a body's address …
     BODY_VALUES,  # … to its index
     PLACES,  # (room, 8) int64: contacts, see `contacts`
@@ -108,9 +108,11 @@ LIMITS_WORDS = 4
 # Response of a law: s = (N, Q, M), then the upper triangle of D = ∂s/∂q row by row.
 FORCE, TANGENT = 0, 3
 RESPONSE_WORDS = 9
-
 # What a law's commit gives: elastic energy, work dissipated in the step, plastic deformation added in it (u, v, θ).
-COMMIT_WORDS = 5
+COMMIT_WORDS, FLOW = 5, 2
+
+# Where a joint's deformation and state begin in the scratch memory, after room for what its law gives.
+SCRATCH_Q, SCRATCH_STATE = 9, 12
 
 # Weight of a body in the solver.
 INERTIA_M, INERTIA_I, INVERSE_M, INVERSE_I = 0, 1, 2, 3
@@ -118,11 +120,11 @@ WEIGHT_WORDS = 4
 
 # Result of a step: q*, force, plastic deformation summed without sign (elongation, shortening, slip, rotation),
 # elastic energy, plastic work so far, viscous work so far, share of the plastic capacity used, elastic energy
-# before the step.
+# before the step. A word is spare, so that a row is two cache lines.
 RESULT_Q, RESULT_FORCE, RESULT_PLASTIC = 0, 3, 6
 RESULT_ELASTIC, RESULT_DISSIPATED, RESULT_VISCOUS, RESULT_USED = 10, 11, 12, 13
 RESULT_BEFORE = 14
-RESULT_WORDS = 15
+RESULT_WORDS = 16
 
 # A contact in `places`: address of the cpContact, its hash; for each side the control table of the structure that the
 # body belongs to (0: none), its index there, and its address.

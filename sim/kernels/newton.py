@@ -21,9 +21,10 @@ import math
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import factorise_matrix, solve
-from sim.kernels.layout import STEP
+from sim.kernels.layout import STEP, TANGENT
 from sim.kernels.residual import (
     advance,
+    apply,
     descent,
     gather,
     linearise,
@@ -31,8 +32,7 @@ from sim.kernels.residual import (
     reach_of,
     respond,
     respond_along_lines,
-    take_last_tangents,
-    take_stiffness,
+    strip_tangents,
 )
 from sim.kernels.spread import advance_spread, along, spread_factor, spread_residual, spread_step
 from sim.memory import kernel
@@ -51,11 +51,7 @@ def restart(t):  # type: ignore[no-untyped-def]
 
     From those, forces would be differences of numbers a million times their size.
     """
-    slope, impulse = views.per_joint(t, at.SLOPE), views.per_joint(t, at.IMPULSE)
-    for k in range(t[at.JOINTS]):
-        for i in range(3):
-            slope[k, i], impulse[k, i] = impulse[k, i], 0.0
-    advance(t, 1.0)
+    apply(t, views.per_joint(t, at.IMPULSE), 1.0, 0.0)
     if t[at.SPREAD] == 1:
         settings = views.settings(t)
         amount, settings[at.SPREAD_IMPULSE] = settings[at.SPREAD_IMPULSE], 0.0
@@ -71,9 +67,9 @@ def measure(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def measure_along_lines(t):  # type: ignore[no-untyped-def]
-    """As `measure`, for laws that are lines."""
-    error, size = respond_along_lines(t)
+def measure_along_lines(t, tangents, first):  # type: ignore[no-untyped-def]
+    """As `measure`, for laws that are lines with these tangents."""
+    error, size = respond_along_lines(t, tangents, first)
     spring, of_spring = pull(t)
     return error + of_spring, size, spring
 
@@ -117,8 +113,8 @@ def predict(t, factor, enough):  # type: ignore[no-untyped-def]
     """
     if t[at.FLOWING] == 0:
         return predict_elastic(t, factor, enough)
-    take_last_tangents(t)
-    _, _, spring = measure_along_lines(t)
+    strip_tangents(t)
+    _, _, spring = measure_along_lines(t, views.response(t), TANGENT)
     factorise_matrix(t, factor)
     _, change = newton_direction(t, factor, spring)
     return go(t, 1.0, change)
@@ -127,8 +123,7 @@ def predict(t, factor, enough):  # type: ignore[no-untyped-def]
 @kernel
 def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
     """Take every joint as elastic; refined where joints are so stiff that they seem to yield by rounding alone."""
-    take_stiffness(t)
-    before, size, spring = measure_along_lines(t)
+    before, size, spring = measure_along_lines(t, views.stiffness(t), 0)
     factorise_matrix(t, factor)
     error = before
     for _ in range(_MOST_REFINEMENTS):
@@ -136,8 +131,7 @@ def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
         error, size, spring = go(t, 1.0, change)
         if error <= enough * (size + motion_scale(t)):
             break
-        take_stiffness(t)
-        rest, _, spring = measure_along_lines(t)
+        rest, _, spring = measure_along_lines(t, views.stiffness(t), 0)
         if rest > 0.1 * before or rest <= enough * size:
             error, size, spring = measure(t)
             break

@@ -36,8 +36,8 @@ from sim.kernels.complement import relative
 from sim.kernels.contacts import SETTLE, kept, other_velocity
 from sim.kernels.energy import close
 from sim.kernels.guard import close_from_below
-from sim.kernels.inertia import mass_of, moment_of, weigh
-from sim.kernels.kinematics import leave_out, prepare
+from sim.kernels.inertia import add_inertia, mass_of, moment_of, weigh
+from sim.kernels.kinematics import prepare, take_up
 from sim.kernels.late import go_back, lateness
 from sim.kernels.layout import (
     BLOW,
@@ -70,22 +70,15 @@ from sim.memory import clear, floats, integers, kernel
 
 @kernel
 def renew(t):  # type: ignore[no-untyped-def]
-    """Weights, deformations and gradients where the bodies are now, and the velocities there."""
-    weigh(t)
-    prepare(t)
-    load_start(t)
-
-
-@kernel
-def load_start(t):  # type: ignore[no-untyped-def]
-    """The solver's velocities: those at the start of the step, or of its part."""
+    """Weights, velocities, deformations and gradients at the start of a step or a part of it."""
     start, velocity = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.VELOCITY)
     body_at, weight = views.body_at(t), views.weight(t)
     for i in range(t[at.BODIES]):
-        for axis in range(3):
-            velocity[i, axis] = start[i, axis]
-    for i in range(t[at.MOVING]):
-        velocity[i, 2] *= moment_of(floats(body_at[i], BODY_WORDS)) / weight[i, INERTIA_I]
+        velocity[i, 0], velocity[i, 1], velocity[i, 2] = start[i, 0], start[i, 1], start[i, 2]
+        if i < t[at.MOVING]:
+            weigh(weight, i, floats(body_at[i], BODY_WORDS))
+    add_inertia(t)
+    prepare(t)
 
 
 @kernel
@@ -96,7 +89,6 @@ def conclude(c, t):  # type: ignore[no-untyped-def]
     t[at.BROKE] += commit(t)
     close(c, t)
     close_from_below(t, contact, plastic, numerical)
-    load_velocities(t, views.per_body(t, at.LAST_VELOCITY))
 
 
 @kernel
@@ -221,6 +213,7 @@ def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
         t = views.control(c)
         places, touches = views.places(t), views.touches(t)
         conclude(c, t)
+        load_velocities(t, views.per_body(t, at.LAST_VELOCITY))
         for k in range(t[at.CONTACTS]):
             contact = floats(places[k, WHERE], CONTACT_WORDS)
             touches[k, EARLIER] += contact[CONTACT_NORMAL_IMPULSE]
@@ -238,20 +231,17 @@ def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
             views.per_body(t, at.LAST_VELOCITY),
             views.per_body(t, at.START_VELOCITY),
         )
-        active, impulse, scale = views.active(t), views.per_joint(t, at.IMPULSE), views.scale(t)
         for i in range(t[at.MOVING]):
             move(body_at[i], h * last[i, 0], h * last[i, 1], h * last[i, 2])
         for i in range(t[at.BODIES]):
             for axis in range(3):
                 start[i, axis] = last[i, axis]
-        for k in range(t[at.JOINTS]):
-            for axis in range(3):
-                impulse[k, axis] *= active[k]
-            scale[k] = 1.0
         clear(views.per_body(t, at.CONTACT_IMPULSE))
         views.settings(t)[STEP_RATIO] = 1.0
-        t[at.SHIFTED] = 0
-        t[at.FREE] = 0 if leave_out(t) else 1
+        if t[at.SHIFTED] == 1:
+            clear(views.shift(t))
+            t[at.SHIFTED] = 0
+        take_up(t, 1.0)
         renew(t)
         c = t[at.NEXT]
     return lost

@@ -16,7 +16,7 @@ from sim.kernels.layout import (
     STEP,
     TANGENT,
 )
-from sim.memory import call_law, kernel
+from sim.memory import call_law, floats, kernel
 
 
 @kernel
@@ -48,8 +48,8 @@ def respond(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def respond_along_lines(t):  # type: ignore[no-untyped-def]
-    """As `respond`, but every law is a line through where the last step ended, with the tangent in its response.
+def respond_along_lines(t, tangents, first):  # type: ignore[no-untyped-def]
+    """As `respond`, but every law is a line through where the last step ended, with a tangent from column ``first`` on.
 
     At that point a law does not flow; at the step's start it may seem to, where bodies moved straight while they
     turned.
@@ -57,18 +57,17 @@ def respond_along_lines(t):  # type: ignore[no-untyped-def]
     joint_bodies, laws, result = views.joint_bodies(t), views.laws(t), views.result(t)
     gradient, deformation = views.gradient(t), views.per_joint(t, at.DEFORMATION)
     velocity, response = views.per_body(t, at.VELOCITY), views.response(t)
-    reach, error, size = reach_of(t), 0.0, 0.0
+    reach, error, size, there = reach_of(t), 0.0, 0.0, floats(t[at.SCRATCH], RESPONSE_WORDS)
     for k in range(t[at.JOINTS]):
         x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
-        d00, d01, d02 = response[k, TANGENT], response[k, TANGENT + 1], response[k, TANGENT + 2]
-        d11, d12, d22 = response[k, TANGENT + 3], response[k, TANGENT + 4], response[k, TANGENT + 5]
-        end, out = t[at.RESULT] + 8 * RESULT_WORDS * k, t[at.RESPONSE] + 8 * RESPONSE_WORDS * k
-        call_law(laws[k, 0], laws[k, 2], laws[k, 3], end, out)
+        d00, d01, d02 = tangents[k, first], tangents[k, first + 1], tangents[k, first + 2]
+        d11, d12, d22 = tangents[k, first + 3], tangents[k, first + 4], tangents[k, first + 5]
+        call_law(laws[k, 0], laws[k, 2], laws[k, 3], t[at.RESULT] + 8 * RESULT_WORDS * k, t[at.SCRATCH])
         u, v = deformation[k, 0] + reach * x - result[k, 0], deformation[k, 1] + reach * y - result[k, 1]
         turn = deformation[k, 2] + reach * z - result[k, 2]
-        response[k, 0] += d00 * u + d01 * v + d02 * turn
-        response[k, 1] += d01 * u + d11 * v + d12 * turn
-        response[k, 2] += d02 * u + d12 * v + d22 * turn
+        response[k, 0] = there[0] + (d00 * u + d01 * v + d02 * turn)
+        response[k, 1] = there[1] + (d01 * u + d11 * v + d12 * turn)
+        response[k, 2] = there[2] + (d02 * u + d12 * v + d22 * turn)
         response[k, TANGENT], response[k, TANGENT + 1], response[k, TANGENT + 2] = d00, d01, d02
         response[k, TANGENT + 3], response[k, TANGENT + 4], response[k, TANGENT + 5] = d11, d12, d22
         of_residual, of_impulse = remain(t, k, reach, x, y, z)
@@ -77,17 +76,8 @@ def respond_along_lines(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def take_stiffness(t):  # type: ignore[no-untyped-def]
-    """Tangents for `respond_along_lines`: those of joints that are elastic."""
-    response, stiffness = views.response(t), views.stiffness(t)
-    for k in range(t[at.JOINTS]):
-        for i in range(6):
-            response[k, TANGENT + i] = stiffness[k, i]
-
-
-@kernel
-def take_last_tangents(t):  # type: ignore[no-untyped-def]
-    """Tangents for `respond_along_lines`: those that the last step ended with, without their viscous part."""
+def strip_tangents(t):  # type: ignore[no-untyped-def]
+    """Take the viscous part out of the tangents that the last step ended with."""
     response, damping, old_reach = views.response(t), views.damping(t), reach_of(t) / views.settings(t)[at.STEP_RATIO]
     for k in range(t[at.JOINTS]):
         response[k, TANGENT] -= damping[k, 0] / old_reach
@@ -100,12 +90,13 @@ def remain(t, k, reach, x, y, z):  # type: ignore[no-untyped-def]
     """Add joint k's viscous forces to its response, and find its residual; returns its energy, and the impulse's."""
     damping, response, lightness = views.damping(t), views.response(t), views.per_joint(t, at.LIGHTNESS)
     impulse, residual, h = views.per_joint(t, at.IMPULSE), views.per_joint(t, at.RESIDUAL), views.settings(t)[STEP]
-    response[k, 0] += damping[k, 0] * x
-    response[k, 1] += damping[k, 1] * y
-    response[k, 2] += damping[k, 2] * z
-    response[k, TANGENT] += damping[k, 0] / reach
-    response[k, TANGENT + 3] += damping[k, 1] / reach
-    response[k, TANGENT + 5] += damping[k, 2] / reach
+    if t[at.DAMPED] == 1:
+        response[k, 0] += damping[k, 0] * x
+        response[k, 1] += damping[k, 1] * y
+        response[k, 2] += damping[k, 2] * z
+        response[k, TANGENT] += damping[k, 0] / reach
+        response[k, TANGENT + 3] += damping[k, 1] / reach
+        response[k, TANGENT + 5] += damping[k, 2] / reach
     error, size = 0.0, 0.0
     for i in range(3):
         residual[k, i] = -h * response[k, i] - impulse[k, i]
@@ -181,15 +172,20 @@ def descent(t, factor):  # type: ignore[no-untyped-def]
 @kernel
 def advance(t, share):  # type: ignore[no-untyped-def]
     """λ += share Δλ and V += share M⁻¹ Jᵀ Δλ."""
+    apply(t, views.per_joint(t, at.SLOPE), share, share)
+
+
+@kernel
+def apply(t, p, share, counted):  # type: ignore[no-untyped-def]
+    """V += share M⁻¹ Jᵀ p and λ += counted p, for impulses p (joints, 3)."""
     joint_bodies, gradient, weight = views.joint_bodies(t), views.gradient(t), views.weight(t)
-    slope, impulse = views.per_joint(t, at.SLOPE), views.per_joint(t, at.IMPULSE)
-    velocity, moving = views.per_body(t, at.VELOCITY), t[at.MOVING]
+    impulse, velocity, moving = views.per_joint(t, at.IMPULSE), views.per_body(t, at.VELOCITY), t[at.MOVING]
     for k in range(t[at.JOINTS]):
-        x, y, z = share * slope[k, 0], share * slope[k, 1], share * slope[k, 2]
-        impulse[k, 0] += x
-        impulse[k, 1] += y
-        impulse[k, 2] += z
-        px, py, on_a, on_b = impulses(gradient, k, x, y, z)
+        x, y, z = p[k, 0], p[k, 1], p[k, 2]
+        impulse[k, 0] += counted * x
+        impulse[k, 1] += counted * y
+        impulse[k, 2] += counted * z
+        px, py, on_a, on_b = impulses(gradient, k, share * x, share * y, share * z)
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         if ia < moving:
             velocity[ia, 0] -= px * weight[ia, INVERSE_M]

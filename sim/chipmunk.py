@@ -132,6 +132,11 @@ def next_move(body: pymunk.Body) -> tuple[pymunk.Vec2d, float]:
     return body.velocity + pushed, body.angular_velocity + float(raw[BIAS_SPIN])
 
 
+def overlap(one: pymunk.Shape, other: pymunk.Shape) -> bool:
+    """Whether two shapes overlap where their bodies are; pymunk's own test takes it for granted."""
+    return bool(lib.cpShapesCollide(one._shape, other._shape).count)
+
+
 def save_body(body: pymunk.Body) -> np.ndarray:
     """A body's numbers to the last bit, with those that pymunk does not save: transform and pseudo-velocities."""
     raw = words(body_address(body), BODY_FULL_WORDS)

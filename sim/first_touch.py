@@ -17,7 +17,7 @@ import pymunk
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from sim.chipmunk import next_move
+from sim.chipmunk import next_move, overlap
 
 _MOST_ADVANCES = 60
 
@@ -48,12 +48,13 @@ def first_touches(space: pymunk.Space, bodies: Iterable[pymunk.Body], dt: float)
     """
     touches = []
     for body in bodies:
+        ways = [_Way(own) for own in body.shapes]
         found = [
             touch
-            for own in body.shapes
-            for other in space.bb_query(_swept(own, dt), own.filter)
+            for way in ways
+            for other in space.bb_query(way.box(dt), way.shape.filter)
             if other.body is not body and other.body is not None and not pass_each_other(body, other.body)
-            for touch in (_first_touch(own, other, dt, space.collision_slop),)
+            for touch in (_first_touch(way, _Way(other), dt, space.collision_slop),)
             if touch is not None
         ]
         if found:
@@ -78,51 +79,81 @@ def pass_each_other(a: pymunk.Body, b: pymunk.Body) -> bool:
     return any(not joint.collide_bodies and b in (joint.a, joint.b) for joint in a.constraints)
 
 
-def _swept(shape: pymunk.Shape, dt: float) -> pymunk.BB:
-    """Box around all places of ``shape`` in its next move."""
-    body = shape.body
-    assert body is not None
-    bb = shape.cache_bb()
-    velocity, spin = next_move(body)
-    dx, dy = velocity * dt
-    turn = abs(spin) * dt * _reach(shape)
-    left, bottom = min(bb.left, bb.left + dx) - turn, min(bb.bottom, bb.bottom + dy) - turn
-    return pymunk.BB(left, bottom, max(bb.right, bb.right + dx) + turn, max(bb.top, bb.top + dy) + turn)
+class _Way:
+    """The way of a convex shape in the next move of its body."""
+
+    def __init__(self, shape: pymunk.Shape) -> None:
+        body = shape.body
+        assert body is not None
+        self.shape, self.radius = shape, rounding(shape)
+        self.velocity, self.spin = next_move(body)
+        self._centre = body.local_to_world(body.center_of_gravity)
+        self._arms = [body.local_to_world(point) - self._centre for point in _corners(shape)]
+        # Brings what Chipmunk keeps of the shape in the world up to date, too.
+        self._box = shape.cache_bb()
+
+    @property
+    def fastest_turn(self) -> float:
+        """Greatest speed with which turning moves a point of the shape [m/s]."""
+        return abs(self.spin) * (max(map(abs, self._arms)) + self.radius) if self.spin != 0.0 else 0.0
+
+    def box(self, dt: float) -> pymunk.BB:
+        """Around all places of the shape in a move of ``dt``."""
+        bb, turn, (dx, dy) = self._box, self.fastest_turn * dt, self.velocity * dt
+        left, bottom = min(bb.left, bb.left + dx) - turn, min(bb.bottom, bb.bottom + dy) - turn
+        return pymunk.BB(left, bottom, max(bb.right, bb.right + dx) + turn, max(bb.top, bb.top + dy) + turn)
+
+    def corners(self, time: float) -> list[pymunk.Vec2d]:
+        """Where the corners, or the centre of a circle, will be in ``time``."""
+        centre, angle = self._centre + self.velocity * time, self.spin * time
+        return [centre + (arm.rotated(angle) if angle != 0.0 else arm) for arm in self._arms]
+
+    def distance(self, point: pymunk.Vec2d, time: float) -> float:
+        """Distance of a point, where it is in ``time``, from the surface then."""
+        centre, angle = self._centre + self.velocity * time, self.spin * time
+        # Chipmunk knows the shape where it is now, so the point is brought there.
+        arm = point - centre
+        return self.shape.point_query(self._centre + (arm.rotated(-angle) if angle != 0.0 else arm)).distance
 
 
-def _reach(shape: pymunk.Shape) -> float:
-    """Greatest distance of the shape from its body's centre of mass [m]."""
-    body = shape.body
-    assert body is not None
-    centre = body.center_of_gravity
+def _corners(shape: pymunk.Shape) -> list[pymunk.Vec2d]:
+    """What a shape is the convex hull of, without its rounding, in coordinates of its body."""
     if isinstance(shape, pymunk.Circle):
-        return shape.offset.get_distance(centre) + shape.radius
+        return [shape.offset]
     if isinstance(shape, pymunk.Poly):
-        return max(corner.get_distance(centre) for corner in shape.get_vertices()) + shape.radius
+        return shape.get_vertices()
     assert isinstance(shape, pymunk.Segment)
-    return max(end.get_distance(centre) for end in (shape.a, shape.b)) + shape.radius
+    return [shape.a, shape.b]
 
 
-def _first_touch(own: pymunk.Shape, other: pymunk.Shape, dt: float, slop: float) -> Touch | None:
+def _gap(own: _Way, other: _Way, time: float) -> float:
+    """Distance of two shapes that do not overlap: that of a corner of one from the other."""
+    gap = min(other.distance(corner, time) for corner in own.corners(time)) - own.radius
+    if isinstance(own.shape, pymunk.Circle):
+        return gap
+    return min(gap, min(own.distance(corner, time) for corner in other.corners(time)) - other.radius)
+
+
+def _first_touch(own: _Way, other: _Way, dt: float, slop: float) -> Touch | None:
     """When the two shapes first touch, in a move of ``dt``; a little later, so that Chipmunk sees it."""
-    a, b = own.body, other.body
+    if overlap(own.shape, other.shape):
+        return None
+    a = own.shape.body
     assert a is not None
-    assert b is not None
-    (velocity_a, spin_a), (velocity_b, spin_b) = next_move(a), next_move(b)
-    approach = (velocity_a - velocity_b).length + abs(spin_a) * _reach(own) + abs(spin_b) * _reach(other)
+    approach = abs(own.velocity - other.velocity) + own.fastest_turn + other.fastest_turn
     if approach == 0.0:
         return None
     time = 0.0
     for _ in range(_MOST_ADVANCES):
-        distance = shapely.distance(moved(own, time), moved(other, time)) - rounding(own) - rounding(other)
+        distance = _gap(own, other, time)
         if distance <= 0.01 * slop:
             if distance <= 0.0 and time == 0.0:
                 return None
-            return Touch(a, min(time + 0.5 * slop / approach, dt), _closing(own, other, time))
+            return Touch(a, min(time + 0.5 * slop / approach, dt), _closing(own.shape, other.shape, time))
         time += distance / approach
         if time >= dt:
             return None
-    return Touch(a, min(time, dt), _closing(own, other, time))
+    return Touch(a, min(time, dt), _closing(own.shape, other.shape, time))
 
 
 def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[float, float]:
@@ -160,9 +191,7 @@ def moved(shape: pymunk.Shape, time: float) -> BaseGeometry:
         x, y = point - body.center_of_gravity
         return centre.x + c * x - s * y, centre.y + s * x + c * y
 
-    if isinstance(shape, pymunk.Circle):
-        return shapely.Point(world(shape.offset))
+    points = [world(corner) for corner in _corners(shape)]
     if isinstance(shape, pymunk.Poly):
-        return shapely.Polygon([world(corner) for corner in shape.get_vertices()])
-    assert isinstance(shape, pymunk.Segment)
-    return shapely.LineString([world(shape.a), world(shape.b)])
+        return shapely.Polygon(points)
+    return shapely.Point(points) if len(points) == 1 else shapely.LineString(points)

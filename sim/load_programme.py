@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import msgspec
@@ -11,6 +12,16 @@ from scene import Scene
 from sim.body_loads import BodyLoad, body_loads
 from sim.members import Assembly
 from sim.pieces import Span
+
+# A load that changes within less is one that acts at once [s].
+_AT_ONCE = 0.1
+
+
+def is_sudden(scene: Scene) -> bool:
+    """Whether something sets ``scene``'s members going at once: a motion, or a load that comes or goes in no time."""
+    histories = (load.history for load in scene.loads_of("history"))
+    jumps = any(t1 - t0 < _AT_ONCE and f0 != f1 for own in histories for (t0, f0), (t1, f1) in itertools.pairwise(own))
+    return scene.motion is not None or bool(scene.loads_of("step")) or jumps
 
 
 class LoadProgramme:

@@ -14,7 +14,7 @@ from sim.direct_joints import add_joints
 from sim.first_touch import first_touches, hold_back
 from sim.ground import add_grounds
 from sim.joint import DuctileJoint
-from sim.load_programme import LoadProgramme
+from sim.load_programme import LoadProgramme, is_sudden
 from sim.loose_bodies import add_bodies
 from sim.measures import Watch
 from sim.members import Assembly, assemble
@@ -30,6 +30,8 @@ from sim.vehicles import Car, add_vehicles
 _REST = 1e-12
 # A run of more would take days.
 _MOST_STEPS = 1e9
+#: Longest part of a step of a scene that something sets going at once [s].
+LONGEST_PART = 1e-4
 
 
 class World:
@@ -93,7 +95,8 @@ class World:
         space.iterations = run.iterations if iterations is None else iterations
         space.collision_slop = run.collision_slop
         self.time, self.steps = 0.0, 0
-        self.part, self._parts_left, self._fewest_parts = self.dt, 0, 1
+        self.part, self._parts_left = self.dt, 0
+        self._fewest_parts = math.ceil(self.dt / LONGEST_PART - 1e-6) if is_sudden(scene) else 1
         self._largest_travel = run.largest_travel
         self._ramp = float(run.gravity_ramp)
         add_grounds(scene, space)
@@ -238,13 +241,15 @@ class World:
         return [body for body in self._continuous if not body.constraints]
 
     def _parts(self) -> int:
-        """Into how many parts the next step is cut, never fewer than before: a power of two.
+        """Into how many parts the next step is cut, never fewer than before: a power of two for what travels fast.
+
+        What is set going at once, by a blow or a load, swings faster than a frame, and its impact is over within one.
 
         The forces of a step are those at the end of a move of the same length. A longer move would carry yielding
         joints beyond where their forces were found, so the parts do not grow again.
         """
         if self._largest_travel is None:
-            return 1
+            return self._fewest_parts
         meeting = {found.body for found in first_touches(self.space, self._loose(), self.dt)}
         meeting |= {body for body in self._loose() if is_touching(body)}
         fastest = max((body.velocity.length for body in meeting), default=0.0)

@@ -2,6 +2,7 @@
 
 import math
 
+import msgspec
 import numpy as np
 import pymunk
 import pytest
@@ -9,8 +10,9 @@ from conftest import CASES
 from frames import IPE300, frame_scene
 
 import sim
-from scene import Scene
+from scene import Measure, Scene
 from sim import AVERAGE_ACCELERATION, Bearing, Model
+from sim.world import World
 
 STRIP = "rectangle 20x50 mm"
 EIGHT = Model("lobatto", 9, "fibre", 16, dt=1e-4, scheme=AVERAGE_ACCELERATION)
@@ -108,6 +110,22 @@ def test_a_struck_cantilever(name: str, dt: float) -> None:
     assert course.unconverged == 0
     assert course.peak == pytest.approx(expected["tip_max_m"], rel=0.05)
     assert -course.residual["B"][1] == pytest.approx(expected["tip_residual_m"], rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["C6-parkes-mid", "C6-parkes-heavy"])
+def test_a_struck_cantilever_as_a_scene_is_run_by_default(name: str) -> None:
+    """`ductile simulate` with nothing chosen, at 1/60 and 1/1000 s, 2 and 30 iterations: 5 % of the fibre frames."""
+    case = CASES[name]
+    scene = cantilever(STRIP, 1.0, moving(0.12), case["inputs"]["G_kg"], case["inputs"]["V_m_per_s"])
+    scene = msgspec.structs.replace(scene, measures={"peak": Measure("displacement", "B", take="largest")})
+    found = []
+    for dt, iterations in ((1 / 60, None), (1 / 60, 2), (1 / 60, 30), (1 / 1000, None)):
+        world = World(scene, dt, iterations)
+        while not world.finished:
+            world.step()
+        found.append(float(world.results()["peak"]))
+    assert found[0] == pytest.approx(case["outputs"]["fibre_corotational"]["tip_max_m"], rel=0.05)
+    assert found[1:] == pytest.approx([found[0]] * 3, rel=0.01)
 
 
 def test_a_struck_cantilever_without_elasticity() -> None:

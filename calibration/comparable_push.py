@@ -22,7 +22,7 @@ import numpy as np
 from capacity import Material, StressStrain
 from fem_reference import wants_plane_stress
 from scene import Scene
-from scene.quantities import Acceleration, Force, ForcePerLength, Length, Moment
+from scene.quantities import Acceleration, Force, ForcePerLength, Length, Moment, Speed
 from sim import Model, Push, push_over
 
 #: ε: what geometry adds is this much smaller, and rounding, some 1e-12 of a deformation, still far smaller.
@@ -49,13 +49,20 @@ def push_model(scene: Scene, model: Model, distances: np.ndarray) -> Push:
 
 
 def shrunk(scene: Scene, share: float) -> Scene:
-    """``scene`` with strengths, loads and prescribed displacements ``share`` times as large, and the same stiffness."""
+    """``scene`` with strengths, loads, prescribed displacements and velocities ``share`` times as large.
+
+    Stiffness and mass stay. Proportional loads stay, too: their factor follows the push.
+    """
     struct = msgspec.structs.replace
     return struct(
         scene,
         gravity=Acceleration(share * scene.gravity),
         nodes={
-            name: struct(node, settlement=tuple(Length(share * s) for s in node.settlement))
+            name: struct(
+                node,
+                settlement=tuple(Length(share * s) for s in node.settlement),
+                velocity=tuple(Speed(share * v) for v in node.velocity),
+            )
             for name, node in scene.nodes.items()
         },
         members={
@@ -68,15 +75,17 @@ def shrunk(scene: Scene, share: float) -> Scene:
                 moment=Moment(share * load.moment),
                 per_length=tuple(ForcePerLength(share * q) for q in load.per_length),
             )
-            if load.kind == "dead"
+            if load.kind in ("dead", "step")
             else load
             for load in scene.loads
         ),
-        pushed=struct(
-            scene.push,
-            distance=Length(share * scene.push.distance),
-            turning_points=tuple(Length(share * d) for d in scene.push.turning_points),
+        pushed=scene.pushed
+        and struct(
+            scene.pushed,
+            distance=Length(share * scene.pushed.distance),
+            turning_points=tuple(Length(share * d) for d in scene.pushed.turning_points),
         ),
+        motion=scene.motion and struct(scene.motion, velocity=tuple(Speed(share * v) for v in scene.motion.velocity)),
     )
 
 

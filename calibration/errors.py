@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from calibration.hinges import HingePair, hinge_pairs, in_order
+from calibration.hinges import HingePair, in_order, push_hinges
 from fem_reference import PushAnswer
 from scene import Scene
 from sim import Push
@@ -93,7 +93,7 @@ class Findings:
 
 def find(scene: Scene, reference: PushAnswer, push: Push, frequency: tuple[float, float]) -> Findings:
     """Hinges and frequency of a model, whose push is ``push``."""
-    pairs = hinge_pairs(scene, reference, push)
+    pairs = push_hinges(scene, reference.hinges, push)
     return Findings(pairs, in_order(pairs) if pairs else None, frequency)
 
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 import pymunk
 
+from calibration.member_plans import MemberPlan
 from calibration.motion_tuning import MotionCalibration
 from calibration.trials import Trial
 from calibration.tuning import Calibration
@@ -50,6 +52,18 @@ def outcome(result: Calibration | MotionCalibration) -> dict[str, Any]:
     }
 
 
+def members_object(plans: Mapping[str, MemberPlan], model: Model) -> dict[str, Any]:
+    """What was decided for each member, and why."""
+    return {
+        name: {
+            **{key: _plain(getattr(plan, key)) for key in ("kind", "utilisation", "energy_share")},
+            "why": plan.reason(model.of(name)),
+            "model": asdict(model.of(name)),
+        }
+        for name, plan in plans.items()
+    }
+
+
 def calibration_object(result: Calibration) -> dict[str, Any]:
     """The calibration as one object for JSON; SI units."""
     best, reference = result.best, result.reference
@@ -75,18 +89,11 @@ def calibration_object(result: Calibration) -> dict[str, Any]:
             "dissipated": best.push.dissipated,
             "seconds": best.push.seconds,
         },
-        "members": {
-            name: {
-                **{key: _plain(value) for key, value in asdict(plan).items()},
-                "why": result.why(name),
-                "model": asdict(best.model.of(name)),
-            }
-            for name, plan in result.plans.items()
-        },
+        "members": members_object(result.plans, best.model),
         "errors": {**asdict(best.errors), "frequency": result.findings.frequency_error},
         "fit": None if result.fit is None else {**asdict(result.fit), "model": settings(result.fit.model)},
         "hinges": [
-            {"where": pair.where, "load": pair.load, "model_load": pair.model_load} for pair in result.findings.hinges
+            {"where": pair.where, "load": pair.reference, "model_load": pair.model} for pair in result.findings.hinges
         ],
         "hinges_in_order": result.findings.hinges_in_order,
         "speed": {

@@ -9,12 +9,15 @@ from typing import NamedTuple
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import StrMethodFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, StrMethodFormatter
 
 from calibration.tuning import Calibration
 from sim import LAWS, RULES
 
+#: Of a report's figures [in]: wide enough for a desk, and their words not too small on a phone.
+WIDTH = 5.8
 INK, REFERENCE, MODEL, FAINT = "#22303c", "#1f6fb2", "#d1495b", "#9aa5b1"
 STYLE = {
     "svg.hashsalt": "ductile-joints",
@@ -37,14 +40,14 @@ def curves(result: Calibration) -> Figure:
     """Both load–deflection curves, and below them by how much they differ."""
     reference, push = result.reference, result.best.push
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(7.2, 4.6), layout="constrained")
+        figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
         top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         top.plot(1e3 * reference.displacement, 1e-3 * reference.load, color=REFERENCE, lw=2.5, label="reference (FEM)")
         label = f"{push.bodies} rigid bodies, {push.joints} joints"
         top.plot(1e3 * push.displacement, 1e-3 * push.load, color=MODEL, lw=1.4, ls=(0, (4, 2)), label=label)
         factor = bool(result.scene.loads_of("proportional"))
         top.set_ylabel("load factor / 1000" if factor else "load [kN]")
-        top.legend(loc="lower right")
+        legend_above(figure, top)
         difference = push.load_at_distances - reference.load
         share = 100.0 * difference / np.abs(reference.load).max()
         bottom.axhspan(-100.0 * result.target_error, 100.0 * result.target_error, color="#e9f3ec", lw=0)
@@ -72,6 +75,10 @@ def frontier(result: Calibration) -> Figure:
     return error_against_cost(clouds, chosen, result.target_error, "path error [% of peak load]")
 
 
+#: Numbers that an axis has at least.
+_FEWEST_TICKS = 3
+
+
 class Cloud(NamedTuple):
     """Models of one kind: seconds for a simulated second, and error [-], of each."""
 
@@ -86,7 +93,7 @@ def error_against_cost(
 ) -> Figure:
     """Errors of models against what a simulated second of them costs, the chosen one ringed."""
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(7.2, 4.2), layout="constrained")
+        figure = Figure(figsize=(WIDTH, 4.4), layout="constrained")
         axes = figure.subplots()
         for name, marker, colour, points in clouds:
             cost, error = _in_units(points)
@@ -95,8 +102,13 @@ def error_against_cost(
         axes.scatter(cost, error, s=120, facecolors="none", edgecolors=INK, linewidths=1.4, label="chosen")
         cost_axes(axes, target_error)
         axes.set_ylabel(ordinate)
-        axes.legend(loc="best", fontsize=9)
+        legend_above(figure, axes)
     return figure
+
+
+def legend_above(figure: Figure, axes: Axes) -> None:
+    """The legend of ``axes`` outside of it, where it hides nothing, in two columns."""
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=2, fontsize=9)
 
 
 def _in_units(points: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
@@ -108,12 +120,27 @@ def cost_axes(axes: Axes, target_error: float) -> None:
     """Logarithmic axes of computing time and an error in per cent, with the target's line."""
     axes.axhline(100.0 * target_error, color=INK, lw=1.0, ls=(0, (4, 2)))
     axes.annotate("target", (1.0, 100.0 * target_error), xycoords=("axes fraction", "data"), ha="right", va="bottom")
-    axes.set_yscale("log")
-    axes.set_xscale("log")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(StrMethodFormatter("{x:g}"))
+    logarithmic(axes)
     axes.set_xlabel("computing time for a simulated second [ms]")
+
+
+def logarithmic(axes: Axes) -> None:
+    """Make both axes logarithmic, each with a few plain numbers: round ones, and as round as three of them can be."""
+    axes.set(xscale="log", yscale="log")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(_round_numbers(axis))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_locator(NullLocator())
+
+
+def _round_numbers(axis: Axis) -> LogLocator | MaxNLocator:
+    low, high = axis.get_view_interval()
+    for multiples in ((1.0,), (1.0, 3.0), (1.0, 2.0, 5.0), range(1, 10)):
+        locator = LogLocator(subs=multiples)
+        ticks = np.asarray(locator.tick_values(low, high))
+        if np.count_nonzero((low <= ticks) & (ticks <= high)) >= _FEWEST_TICKS:
+            return locator
+    return MaxNLocator(5)
 
 
 def svg(figure: Figure) -> str:

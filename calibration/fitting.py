@@ -25,12 +25,13 @@ import msgspec
 import numpy as np
 from scipy.optimize import least_squares
 
+from calibration.comparable_motion import follow_model
 from calibration.comparable_push import push_model
 from capacity import InputError, Material, StressStrain
 from fem_reference import PushAnswer, motion, push_over
 from scene import Scene
 from scene.quantities import Force, ForcePerLength, Length, Moment, Speed
-from sim import IMPLICIT_EULER, Model, follow
+from sim import IMPLICIT_EULER, Model
 
 Name = Literal["stiffness", "strength", "spread", "hardening", "hinge_length", "damping"]
 #: Start and bounds of each parameter.
@@ -121,7 +122,7 @@ class LoadCase:
             push = push_model(scene, replace(model, scheme=IMPLICIT_EULER), self.points)
             found = push.load_at_distances
         else:
-            course = follow(scene, model)
+            course = follow_model(scene, model)
             found = np.interp(self.points, course.time, course.displacement)
         return np.asarray((found - self.values) / np.abs(self.values).max())
 

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from fem_reference import PushAnswer
-from fem_reference.hinge_events import plastic_moment
+from fem_reference import HingeEvent, HingeTime
+from fem_reference.hinge_events import Hinge, plastic_moment
 from scene import Scene
-from sim import JointPlace, Push
+from sim import Course, JointPlace, Push
 
 _FIBRES = 64
 #: Share of M_pl,N at which a joint counts as a hinge: its rotation is spread over the length that it stands for, and a
 #: yield surface of facets lies up to a hundredth inside.
 FULL = 0.985
-#: Loads closer than this, as shares of the largest, are not in any order.
+#: Loads or times closer than this, as shares of the largest, are not in any order.
 _TOGETHER = 0.005
+
+_H = TypeVar("_H", bound=Hinge)
 
 
 @dataclass(frozen=True)
@@ -27,45 +31,63 @@ class HingePair:
     ----------
     where : str
         Its node, or its member and the distance from the member's start.
-    load : float
-        The reference's load when it forms.
-    model_load : float or None
+    reference : float
+        The reference's load, or the time in a motion [s], when it forms.
+    model : float or None
         The model's, when the joint nearest to it comes to 98.5 % of M_pl,N; None when it never does.
     step : int
         Step in which it does; -1 when it never does.
     """
 
     where: str
-    load: float
-    model_load: float | None
+    reference: float
+    model: float | None
     step: int
 
 
-def hinge_pairs(scene: Scene, reference: PushAnswer, push: Push) -> tuple[HingePair, ...]:
-    """The reference's hinges, in its order."""
-    pairs = []
-    for hinge in reference.hinges:
-        steps = []
-        for i, place in enumerate(push.places):
-            if _stands_for(scene, place, hinge.member, hinge.position, hinge.node):
-                full = _reached(scene, place.member, push.force[:, i])
-                steps += full[:1].tolist()
-        step = min(steps, default=-1)
-        where = hinge.node or f"{hinge.member} at {hinge.position:.4g} m"
-        pairs.append(HingePair(where, hinge.load, float(push.load[step]) if steps else None, step))
-    return tuple(pairs)
+def push_hinges(scene: Scene, hinges: Sequence[HingeEvent], push: Push) -> tuple[HingePair, ...]:
+    """The reference's hinges in its order, with their loads and those of ``push``."""
+    return tuple(
+        HingePair(_where(hinge), hinge.load, float(push.load[step]) if step >= 0 else None, step)
+        for hinge, step in _with_steps(scene, hinges, push)
+    )
+
+
+def motion_hinges(scene: Scene, hinges: Sequence[HingeTime], course: Course) -> tuple[HingePair, ...]:
+    """The reference's hinges in its order, with their times and those of ``course`` [s]."""
+    return tuple(
+        HingePair(_where(hinge), hinge.time, float(course.time[step]) if step >= 0 else None, step)
+        for hinge, step in _with_steps(scene, hinges, course)
+    )
 
 
 def in_order(pairs: tuple[HingePair, ...]) -> bool:
     """Whether the model has all the reference's hinges, and in its order."""
-    if any(pair.model_load is None for pair in pairs):
+    if any(pair.model is None for pair in pairs):
         return False
-    scale = max((abs(pair.load) for pair in pairs), default=0.0)
+    scale = max((abs(pair.reference) for pair in pairs), default=0.0)
     return all(
-        early.step <= late.step or abs(late.load - early.load) <= _TOGETHER * scale
+        early.step <= late.step or abs(late.reference - early.reference) <= _TOGETHER * scale
         for i, early in enumerate(pairs)
         for late in pairs[i + 1 :]
     )
+
+
+def _where(hinge: Hinge) -> str:
+    return hinge.node or f"{hinge.member} at {hinge.position:.4g} m"
+
+
+def _with_steps(scene: Scene, hinges: Sequence[_H], answer: Push | Course) -> list[tuple[_H, int]]:
+    """Each hinge with the step in which the first joint that stands for it is one; -1 when none ever is."""
+    pairs = []
+    for hinge in hinges:
+        steps = []
+        for i, place in enumerate(answer.places):
+            if _stands_for(scene, place, hinge.member, hinge.position, hinge.node):
+                full = _reached(scene, place.member, answer.force[:, i])
+                steps += full[:1].tolist()
+        pairs.append((hinge, min(steps, default=-1)))
+    return pairs
 
 
 def _stands_for(scene: Scene, place: JointPlace, member: str, position: float, node: str) -> bool:

@@ -6,25 +6,25 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from calibration.trials import Failure, Trial
-from fem_reference import PushAnswer, Pushover
+from calibration.saving import Tried
+from calibration.trials import Failure
 from scene import Scene
-from sim import Model, Push
+from sim import Course, Model, Push
 
 #: An error that falls by less than this share from one model to the next does not fall.
 _LEVEL = 0.1
 
 
-def what_limits(best: Trial, trials: Sequence[Trial], failures: Sequence[Failure]) -> str:
+def what_limits(best: Tried, trials: Sequence[Tried], failures: Sequence[Failure]) -> str:
     """What the best model's error does not fall for, judged by the models beside it."""
     causes = []
     for what, key in (("joints", _but_joints), ("fibres", _but_fibres), ("steps", _but_steps)):
         others = [trial for trial in trials if trial is not best and key(trial.model) == key(best.model)]
         fewer = [trial for trial in others if trial.cost < best.cost]
-        if not fewer:
+        if not fewer or len(fewer) < len(others):
             continue
         last = max(fewer, key=lambda trial: trial.cost)
-        before, now = last.errors.path_max, best.errors.path_max
+        before, now = last.error, best.error
         if now <= (1.0 - _LEVEL) * before:
             causes.append(
                 f"finer {what} still help, {100.0 * before:.3g} to {100.0 * now:.3g} %, and finer ones are not tried"
@@ -36,13 +36,11 @@ def what_limits(best: Trial, trials: Sequence[Trial], failures: Sequence[Failure
     return "; ".join(causes)
 
 
-def shear_remarks(scene: Scene, reference: PushAnswer, push: Push) -> tuple[str, ...]:
-    """Members in which more shear than Q_max comes up: a reference of beams does not yield in shear."""
-    if not isinstance(reference, Pushover):
-        return ()
+def shear_remarks(scene: Scene, answer: Push | Course) -> tuple[str, ...]:
+    """Members in which a model comes to more than Q_max beside a reference of beams, which do not yield in shear."""
     most: dict[str, float] = {}
-    for i, place in enumerate(push.places):
-        most[place.member] = max(most.get(place.member, 0.0), float(np.abs(push.force[:, i, 1]).max()))
+    for i, place in enumerate(answer.places):
+        most[place.member] = max(most.get(place.member, 0.0), float(np.abs(answer.force[:, i, 1]).max()))
     return tuple(
         f"members.{name}: shear comes to {100.0 * Q / scene.capacity(name).Q_max:.0f} % of Q_max; joints give way "
         "there; the beams of the reference do not, nor did the joints that were compared with them"

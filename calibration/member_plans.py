@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from fem_reference import MemberResult, PushAnswer, Pushover
+from fem_reference import MemberResult, MotionResult, PushAnswer, Pushover
 from scene import Scene
 from sim import MemberModel
 
@@ -34,19 +35,23 @@ class MemberPlan:
         Largest |N| / N_max + |M| / M_yield along the path, 1 at first yield; an upper bound where the member bears a
         load along its length [-].
     energy_share : float
-        Its share of the elastic energy of all members, where that is largest along the path [-].
+        Its share of the elastic energy of all members, where that is largest along the path; in a motion its largest
+        elastic energy over the largest of all together [-].
+    moves : bool
+        Whether that was a motion: then waves run through it, and how many joints it takes is found by trial.
     """
 
     kind: Kind
     utilisation: float
     energy_share: float
+    moves: bool = False
 
     @property
     def fixed(self) -> MemberModel | None:
         """The model that does for it; None where that is to be found by trial."""
         if self.kind == "rigid":
             return MemberModel("lobatto", RIGID_JOINTS, "elastic-plastic")
-        if self.kind == "elastic":
+        if self.kind == "elastic" and not self.moves:
             return MemberModel("lobatto", ELASTIC_JOINTS, "elastic-plastic")
         return None
 
@@ -73,16 +78,34 @@ def member_plans(scene: Scene, reference: PushAnswer, target_error: float) -> di
         return {name: MemberPlan("elastic-plastic", math.nan, math.nan) for name in scene.members}
     energy = {name: _elastic_energy(scene, name, reference.members[name]) for name in scene.members}
     total = np.maximum(sum(energy.values()), np.finfo(float).tiny)
+    return _decided(
+        {
+            name: (_utilisation(scene, name, reference), float((energy[name] / total)[1:].max(initial=0.0)))
+            for name in scene.members
+        },
+        target_error,
+    )
+
+
+def motion_plans(reference: MotionResult, target_error: float) -> dict[str, MemberPlan]:
+    """What each member needs for errors of ``target_error`` of the peak."""
+    shares = reference.energy_share
+    borne = {name: (share, shares[name]) for name, share in reference.utilisation.items()}
+    return _decided(borne, target_error, moves=True)
+
+
+def _decided(
+    borne: Mapping[str, tuple[float, float]], target_error: float, *, moves: bool = False
+) -> dict[str, MemberPlan]:
+    """Plans from utilisations and shares of the elastic energy."""
     plans = {}
-    for name in scene.members:
-        utilisation = _utilisation(scene, name, reference)
-        share = float((energy[name] / total)[1:].max(initial=0.0))
+    for name, (utilisation, share) in borne.items():
         kind: Kind = "elastic-plastic"
         if utilisation < 1.0:
             kind = "rigid" if share < RIGID_SHARE * target_error else "elastic"
-        plans[name] = MemberPlan(kind, utilisation, share)
+        plans[name] = MemberPlan(kind, utilisation, share, moves)
     if all(plan.kind == "rigid" for plan in plans.values()):
-        return {name: MemberPlan("elastic", plan.utilisation, plan.energy_share) for name, plan in plans.items()}
+        return {name: replace(plan, kind="elastic") for name, plan in plans.items()}
     return plans
 
 

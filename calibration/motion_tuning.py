@@ -8,22 +8,25 @@ from dataclasses import dataclass
 import msgspec
 import numpy as np
 
+from calibration.comparable_motion import follow_model
+from calibration.errors import Findings
 from calibration.frequencies import model_frequency, reference_frequency
-from calibration.planner import motion_candidates, relative_cost
+from calibration.hinges import in_order, motion_hinges
+from calibration.limits import shear_remarks, what_limits
+from calibration.member_plans import MemberPlan, motion_plans
+from calibration.motion_search import cheapest_step
+from calibration.planner import MOTION_RATES, motion_cuts, relative_cost
+from calibration.saving import give_less
 from calibration.trials import Failure
 from capacity import Capacity, InputError
-from fem_reference import MotionResult, motion, remarks
+from fem_reference import HISTORY_SHARE, MotionResult, motion, remarks
 from scene import Scene
 from scene.actions import unit_vector
-from sim import Course, Model, SolverError, follow
+from scene.watched import extreme
+from sim import Course, Model, SolverError
 
 #: The reference's peak and what remains must be known this many times better than the target.
 REFERENCE_MARGIN = 3.0
-#: What differs at any time counts as much less: it is nearly all a matter of being a little early or late, and yet a
-#: model that swings otherwise has no right to the same peak.
-HISTORY_SHARE = 0.1
-#: How often the reference is asked for half its error as long as it is not known well enough.
-_MOST_REFINEMENTS = 3
 
 
 @dataclass(frozen=True)
@@ -67,40 +70,36 @@ class MotionTrial:
     cost: float
 
     @property
-    def seconds_per_simulated_second(self) -> float:
-        """Time that a second of simulation takes."""
-        return self.course.seconds / (self.course.steps * self.model.dt)
+    def error(self) -> float:
+        """What a target holds for."""
+        return self.errors.worst
 
 
 @dataclass(frozen=True)
 class MotionCalibration:
-    """A scene calibrated by its motion; attributes as those of `calibration.tuning.Calibration`.
-
-    Attributes
-    ----------
-    frequency : (float, float)
-        First natural frequency of the reference and of the best model [Hz]; 0 for a structure that is free to move.
-    """
+    """A scene calibrated by its motion; attributes as those of `calibration.tuning.Calibration`."""
 
     name: str
     scene: Scene
     capacity: dict[str, Capacity]
     reference: MotionResult
+    plans: dict[str, MemberPlan]
     trials: tuple[MotionTrial, ...]
     failures: tuple[Failure, ...]
     best: MotionTrial
-    frequency: tuple[float, float]
+    findings: Findings
     target_error: float
 
     @property
     def uncertainty(self) -> float:
         """Estimated error of the reference's peak or of what remains, the larger, over the peak [-]."""
-        return _uncertainty(self.reference)
+        reference = self.reference
+        return max(reference.peak_error, reference.residual_error) / abs(reference.peak)
 
     @property
     def target_met(self) -> bool:
         """Whether peak and residual are within the target, and the reference is good enough to say so."""
-        return self.best.errors.worst <= self.target_error and self.reference_good_enough
+        return self.best.error <= self.target_error and self.reference_good_enough
 
     @property
     def reference_good_enough(self) -> bool:
@@ -115,20 +114,19 @@ class MotionCalibration:
         if not self.reference_good_enough:
             return (
                 f"the reference's own peak and rest are only known within {100.0 * self.uncertainty:.2g} %, "
+                f"with {self.reference.elements} elements a member and {self.reference.steps} steps, "
                 f"and must be {REFERENCE_MARGIN:.0f} times better than the target"
             )
-        return "neither more joints and fibres nor shorter steps than those tried bring peak and rest nearer"
-
-    @property
-    def frequency_error(self) -> float | None:
-        """Signed, over the reference's; None for a structure that is free to move."""
-        reference, model = self.frequency
-        return model / reference - 1.0 if reference > 0.0 else None
+        return what_limits(self.best, self.trials, self.failures)
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What to mind about beam theory and kinematics; empty when there is nothing."""
-        return remarks(self.scene)
+        """What to mind about beam theory, kinematics and shear; empty when there is nothing."""
+        return (*remarks(self.scene, self.reference.peak), *shear_remarks(self.scene, self.best.course))
+
+    def why(self, member: str) -> str:
+        """Why the best model has what it has in a member, in words."""
+        return self.plans[member].reason(self.best.model.of(member))
 
 
 def calibrate_motion(
@@ -160,70 +158,83 @@ def calibrate_motion(
         raise ValueError(f"a target error of {target_error:g} is not between 0 and 1")
     if scene.motion is None:
         raise InputError("motion", "the scene has none", 'add [motion] with duration = "0.2 s"')
-    reference = _reference(scene, target_error, lambda share: watch("reference", share))
-    watched = msgspec.structs.replace(scene, motion=msgspec.structs.replace(scene.motion, watch=reference.node))
-    yields = float(reference.plastic.max()) > target_error * float(np.abs(reference.external).max())
-    models = motion_candidates(watched, yields=yields)
-    frequency = reference_frequency(scene)
-    trials: list[MotionTrial] = []
-    failures: list[Failure] = []
-    for i, model in enumerate(models):
-        watch(f"model {i + 1}: {model.rule} {model.joints}, {model.law}, 1/{1.0 / model.dt:.0f} s", i / len(models))
-        try:
-            course = follow(watched, model)
-        except SolverError as error:
-            failures.append(Failure(model, str(error)))
-            continue
-        cost = relative_cost(model, scene.members, course.newton_steps)
-        trials.append(MotionTrial(model, course, _compare(watched, reference, course, frequency), cost))
-        if trials[-1].errors.worst <= target_error:
-            break
+    margin = target_error / REFERENCE_MARGIN
+    reference = motion(scene, margin, watch=lambda share: watch("reference", share), of="peak")
+    plans = motion_plans(reference, target_error)
+    bench = Bench(scene, reference)
+    found = cheapest_step(motion_cuts(scene, plans), MOTION_RATES, scene.members, target_error, bench.try_out, watch)
+    if found is not None:
+        give_less(scene, found, plans, target_error, bench.try_out, watch)
+    watch("models", 1.0)
+    trials, failures = bench.trials, bench.failures
     if not trials:
         raise SolverError(f"none of {len(failures)} models could be stepped; the last said: {failures[-1].reason}")
-    met = [trial for trial in trials if trial.errors.worst <= target_error]
-    best = min(met, key=lambda trial: trial.cost) if met else min(trials, key=lambda trial: trial.errors.worst)
+    met = [trial for trial in trials if trial.error <= target_error]
+    best = min(met, key=lambda trial: trial.cost) if met else min(trials, key=lambda trial: trial.error)
+    hinges = motion_hinges(scene, reference.hinges, best.course)
     return MotionCalibration(
         name=name or scene.title,
         scene=scene,
         capacity={member: scene.capacity(member) for member in scene.members},
         reference=reference,
+        plans=plans,
         trials=tuple(sorted(trials, key=lambda trial: trial.cost)),
         failures=tuple(failures),
         best=best,
-        frequency=(frequency, model_frequency(scene, best.model)),
+        findings=Findings(
+            hinges, in_order(hinges) if hinges else None, (bench.frequency, model_frequency(scene, best.model))
+        ),
         target_error=target_error,
     )
 
 
-def _reference(scene: Scene, target_error: float, watch: Callable[[float], None]) -> MotionResult:
-    """The reference, asked again for a smaller error until its peak and rest are known well enough."""
-    tolerance = target_error
-    result = motion(scene, tolerance, watch=watch)
-    for _ in range(_MOST_REFINEMENTS):
-        if _uncertainty(result) <= target_error / REFERENCE_MARGIN or result.error_estimate > tolerance:
-            break
-        tolerance = 0.5 * min(tolerance, result.error_estimate)
-        result = motion(scene, tolerance, watch=watch)
-    return result
+class Bench:
+    """Where models of a scene are tried against its reference.
 
+    Attributes
+    ----------
+    frequency : float
+        First natural frequency of the reference [Hz].
+    trials : list of MotionTrial
+    failures : list of Failure
+    """
 
-def _uncertainty(reference: MotionResult) -> float:
-    return max(reference.peak_error, reference.residual_error) / abs(reference.peak)
+    def __init__(self, scene: Scene, reference: MotionResult) -> None:
+        assert scene.motion is not None
+        self._scene = msgspec.structs.replace(scene, motion=msgspec.structs.replace(scene.motion, watch=reference.node))
+        self._reference = reference
+        self.frequency = reference_frequency(scene)
+        self.trials: list[MotionTrial] = []
+        self.failures: list[Failure] = []
+
+    def try_out(self, model: Model) -> MotionTrial | None:
+        """Have ``model`` move as the reference did; None when it breaks down."""
+        try:
+            course = follow_model(self._scene, model)
+        except SolverError as error:
+            self.failures.append(Failure(model, str(error)))
+            return None
+        cost = relative_cost(model, self._scene.members, course.newton_steps)
+        errors = _compare(self._scene, self._reference, course, self.frequency)
+        self.trials.append(MotionTrial(model, course, errors, cost))
+        return self.trials[-1]
 
 
 def _compare(scene: Scene, reference: MotionResult, course: Course, frequency: float) -> MotionErrors:
     assert scene.motion is not None
     along = np.array(unit_vector(scene.motion.direction))
-    size = abs(reference.peak)
+    size, duration = abs(reference.peak), float(scene.motion.duration)
     rest, wanted = (float(along @ at.residual[reference.node]) for at in (course, reference))
-    near = np.abs(course.time - reference.peak_time) <= (0.25 / frequency if frequency > 0.0 else np.inf)
-    swing = float(course.time[near][int(np.argmax(np.sign(reference.peak) * course.displacement[near]))])
-    history = np.interp(reference.time, course.time, course.displacement) - reference.displacement
+    near = np.flatnonzero(
+        np.abs(course.time - reference.peak_time) <= (0.25 / frequency if frequency > 0.0 else np.inf)
+    )
+    swing = near[0] + extreme(np.maximum(np.sign(reference.peak) * course.displacement[near], 0.0))[1]
+    history = np.interp(course.time, reference.time, reference.displacement) - course.displacement
     work = float(reference.plastic[-1])
     return MotionErrors(
-        peak=float(np.abs(course.displacement).max()) / size - 1.0,
+        peak=abs(course.peak) / size - 1.0,
         residual=(rest - wanted) / size,
         history=float(np.abs(history).max()) / size,
-        peak_time=(swing - reference.peak_time) / float(scene.motion.duration),
+        peak_time=(swing * float(course.time[1]) - reference.peak_time) / duration,
         plastic_work=course.dissipated / work - 1.0 if work > 1e-6 * float(np.abs(reference.external).max()) else None,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from calibration.member_plans import MemberPlan
+from calibration.member_plans import ELASTIC_JOINTS, MemberPlan
 from scene import Scene
 from sim import AVERAGE_ACCELERATION, MemberModel, Model
 
@@ -31,9 +31,9 @@ _EQUAL = ((9, 8), (17, 12), (33, 16))
 # Where more joints and fibres no longer help it may be the step: fine models again, stepped finer.
 _FINE_STEPPING = ((1.0 / 240.0, 2), (1.0 / 1000.0, 4))
 _FINE = ((10, 16), (17, 48))
-# In a motion: joints and fibres, those of hinges without fibres; steps a second; average acceleration, damped little.
-_MOTION_FIBRES = ((3, 4), (5, 4), (4, 8), (6, 12), (8, 12), (10, 16), (14, 16), (20, 24))
-_MOTION_RATES = (60, 120, 240, 480, 1000, 2000, 4000)
+# In a motion: joints and fibres; steps a second; average acceleration, damped little.
+_MOTION_FIBRES = ((4, 8), (6, 12), (8, 12), (10, 16), (14, 16), (20, 24))
+MOTION_RATES = (60, 120, 240, 480, 1000, 2000, 4000, 8000)
 _MOTION_SCHEME = (AVERAGE_ACCELERATION[0], 0.02)
 
 # Prices of `benchmarks/model_prices.py` in microseconds, rounded: of a step, of a joint in it, of each Newton step
@@ -97,22 +97,32 @@ def candidates_to_fit(scene: Scene) -> list[Model]:
     return sorted(models, key=lambda model: relative_cost(model, scene.members))
 
 
-def motion_candidates(scene: Scene, *, yields: bool) -> list[Model]:
-    """Models in order of `relative_cost` for a motion, in which the step decides as much as joints and fibres do."""
-    joints = _MOTION_FIBRES if yields else ((3, 4), (4, 4), (5, 4), (6, 4), (8, 4), (10, 4), (14, 4))
-    models = [
-        Model("lobatto", n, "fibre" if fibres > 4 else "elastic-plastic", fibres, 1.0 / rate, scheme=_MOTION_SCHEME)
-        for n, fibres in joints
-        for rate in _MOTION_RATES
-    ]
+def motion_cuts(scene: Scene, plans: Mapping[str, MemberPlan]) -> list[Model]:
+    """Models for a motion in order of `relative_cost`, to be tried with the steps of `MOTION_RATES`.
+
+    A member that stays elastic has as many joints as the others, for waves run through it, too.
+    """
+    if all(plan.kind != "elastic-plastic" for plan in plans.values()):
+        cuts = [Model("lobatto", joints, "elastic-plastic") for joints in (3, 4, 5, 6, 8, 10, 14)]
+    else:
+        cuts = [Model("lobatto", joints, law) for joints in _HINGES for law in ("elastic-plastic", "interaction")]
+        cuts += [Model("lobatto", joints, "fibre", fibres) for joints, fibres in _MOTION_FIBRES]
+    models = []
+    for cut in cuts:
+        elastic = MemberModel("lobatto", cut.joints, "elastic-plastic")
+        own = {name: elastic for name, plan in plans.items() if plan.kind == "elastic"} | _fixed(plans)
+        models.append(replace(cut, scheme=_MOTION_SCHEME, members=own))
     return sorted(models, key=lambda model: relative_cost(model, scene.members))
 
 
-def cheaper(model: MemberModel) -> list[MemberModel]:
-    """Cheaper models for a member that yields, cheapest first: one rung, three rungs lower, and a hinge at each end.
+def cheaper(model: MemberModel, plan: MemberPlan) -> list[MemberModel]:
+    """Cheaper models for a member, cheapest first.
 
-    A member that yields at one end only, or a little, may do with less than its neighbours.
+    A member that yields at one end only, or a little, may do with less than its neighbours: a hinge at each end, three
+    rungs lower, or one. One that waves run through may do with the joints that carry slow ones.
     """
+    if plan.kind == "elastic":
+        return [MemberModel("lobatto", joints, model.law) for joints in (ELASTIC_JOINTS, 4, 6) if joints < model.joints]
     if model.law != "fibre":
         return []
     rungs = [(joints, fibres) for joints, fibres in _LOBATTO if joints < model.joints and fibres <= model.fibres]
@@ -121,7 +131,7 @@ def cheaper(model: MemberModel) -> list[MemberModel]:
 
 
 def groups(scene: Scene, plans: Mapping[str, MemberPlan]) -> list[list[str]]:
-    """Yielding members, those alike together, in the order of how far they yield.
+    """Members that are not decided beforehand, those alike together, in the order of how much they bear.
 
     Alike are members of one section and length whose forces come as near to first yield: the two halves of a symmetric
     beam, say, which must stay symmetric.

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from calibration import figures
 from calibration.export import joint_table
 from calibration.fitting import Fit
+from calibration.member_plans import MemberPlan
 from calibration.sheets import Picture, Report, Sheet, percent
 from calibration.tuning import Calibration
 from capacity import Capacity
@@ -58,7 +59,11 @@ def verdict(result: Calibration) -> tuple[str, str]:
 
 def sheets(result: Calibration) -> list[Sheet]:
     """All tables of the report, in its order."""
-    tables = [capacity_sheet(result.scene, result.capacity), _members(result), _errors(result)]
+    tables = [
+        capacity_sheet(result.scene, result.capacity),
+        member_sheet(result.plans, result.best.model),
+        _errors(result),
+    ]
     if result.fit is not None:
         tables.extend(fit_sheets(result.fit))
     if result.findings.hinges:
@@ -99,8 +104,9 @@ def capacity_sheet(scene: Scene, capacities: Mapping[str, Capacity]) -> Sheet:
     return Sheet("Capacities", note, heads, tuple(rows), wide=("M_yield", "EA", "GA_s"))
 
 
-def _members(result: Calibration) -> Sheet:
-    rows = [(name, plan.kind, result.why(name)) for name, plan in result.plans.items()]
+def member_sheet(plans: Mapping[str, MemberPlan], model: Model) -> Sheet:
+    """What was decided for each member, and why."""
+    rows = [(name, plan.kind, plan.reason(model.of(name))) for name, plan in plans.items()]
     return Sheet("What each member needs", "", ("<member", "<decided", "<why"), tuple(rows))
 
 
@@ -165,9 +171,9 @@ def _hinges(result: Calibration) -> Sheet:
     for pair in result.findings.hinges:
         model = "none"
         difference = "–"
-        if pair.model_load is not None:
-            model, difference = said(pair.model_load), f"{100.0 * (pair.model_load - pair.load) / scale:+.2f} %"
-        rows.append((pair.where, said(pair.load), model, difference))
+        if pair.model is not None:
+            model, difference = said(pair.model), f"{100.0 * (pair.model - pair.reference) / scale:+.2f} %"
+        rows.append((pair.where, said(pair.reference), model, difference))
     note = (
         "Loads at which plastic hinges form, in the reference's order; a joint counts as one at 98.5 % of its plastic "
         "moment. Differences are shares of the peak load." + (" Loads are load factors." if is_factor else "")

@@ -32,6 +32,11 @@ class Trial:
     cost: float
     fit: Fit | None = None
 
+    @property
+    def error(self) -> float:
+        """What a target holds for: the path error."""
+        return self.errors.path_max
+
 
 @dataclass(frozen=True)
 class Failure:

@@ -11,10 +11,11 @@ from calibration.fitting import Fit, LoadCase, fit, fitted
 from calibration.frequencies import model_frequency, reference_frequency
 from calibration.limits import shear_remarks, what_limits
 from calibration.member_plans import MemberPlan, member_plans
-from calibration.planner import candidates, candidates_to_fit, cheaper, groups, relative_cost
+from calibration.planner import candidates, candidates_to_fit, relative_cost
+from calibration.saving import give_less
 from calibration.trials import Failure, Trial
 from capacity import Capacity, InputError
-from fem_reference import NotConverged, PlanePush, PushAnswer, default_tolerance, push_over, remarks
+from fem_reference import NotConverged, PlanePush, PushAnswer, Pushover, default_tolerance, push_over, remarks
 from scene import Scene
 from sim import Model, SolverError
 
@@ -24,8 +25,6 @@ REFERENCE_MARGIN = 5.0
 REFERENCE_TOLERANCE = 5e-4
 #: Points of a path below which there is nothing to compare.
 _FEWEST_POINTS = 10
-#: Trials spent on giving single members less once a model has met the target.
-_MOST_SAVING_TRIALS = 16
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ class Calibration:
     @property
     def target_met(self) -> bool:
         """Whether the best model's error is within the target and the reference is good enough to say so."""
-        return self.best.errors.path_max <= self.target_error and self.reference_good_enough
+        return self.best.error <= self.target_error and self.reference_good_enough
 
     @property
     def reference_good_enough(self) -> bool:
@@ -93,7 +92,8 @@ class Calibration:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What to mind about beam theory, kinematics and shear; empty when there is nothing."""
-        return (*remarks(self.scene), *shear_remarks(self.scene, self.reference, self.best.push))
+        of_beams = shear_remarks(self.scene, self.best.push) if isinstance(self.reference, Pushover) else ()
+        return (*remarks(self.scene), *of_beams)
 
     @property
     def fitted_scene(self) -> Scene:
@@ -153,15 +153,15 @@ def calibrate(
     for i, model in enumerate(models):
         watch(f"model {i + 1}: {model.rule} {model.joints}, {model.law}", i / len(models))
         trial = bench.try_out(model)
-        if trial is not None and trial.errors.path_max <= target_error:
-            _save(bench, trial, plans, target_error, watch)
+        if trial is not None and trial.error <= target_error:
+            give_less(scene, trial, plans, target_error, bench.try_out, watch)
             break
     watch("models", 1.0)
     trials, failures = bench.trials, bench.failures
     if not trials:
         raise SolverError(f"none of {len(failures)} models could be stepped; the last said: {failures[-1].reason}")
-    met = [trial for trial in trials if trial.errors.path_max <= target_error]
-    best = min(met, key=lambda trial: trial.cost) if met else min(trials, key=lambda trial: trial.errors.path_max)
+    met = [trial for trial in trials if trial.error <= target_error]
+    best = min(met, key=lambda trial: trial.cost) if met else min(trials, key=lambda trial: trial.error)
     frequency = (0.0 if bench.fits else reference_frequency(scene), model_frequency(scene, best.model))
     if bench.fits:
         watch("reference of a load case that the fit did not see", 0.0)
@@ -226,25 +226,3 @@ class Bench:
         trial = Trial(model, push, compare(self.reference, push), cost, found)
         self.trials.append(trial)
         return trial
-
-
-def _save(
-    bench: Bench,
-    trial: Trial,
-    plans: dict[str, MemberPlan],
-    target_error: float,
-    watch: Callable[[str, float], None],
-) -> None:
-    """Give members that yield less, those that yield least first, while the target is met; members alike get alike."""
-    alike = groups(bench.scene, plans)
-    left = _MOST_SAVING_TRIALS if len(alike) > 1 else 0
-    for names in alike:
-        for own in cheaper(trial.model.of(names[0])):
-            if left == 0:
-                return
-            left -= 1
-            watch(f"{names[0]} with {own.joints} joints", 1.0 - left / _MOST_SAVING_TRIALS)
-            less = bench.try_out(replace(trial.model, members={**trial.model.members, **dict.fromkeys(names, own)}))
-            if less is not None and less.errors.path_max <= target_error and less.cost < trial.cost:
-                trial = less
-                break

@@ -1,7 +1,7 @@
 """What the continuum does: elastic–plastic frames and plane stress on scikit-fem, each with an error estimate."""
 
 from fem_reference.beam_fields import motion_field_files, push_field_files
-from fem_reference.dynamics import MotionResult, motion
+from fem_reference.dynamics import HISTORY_SHARE, MotionResult, motion
 from fem_reference.hinge_events import HingeEvent
 from fem_reference.hinge_times import HingeTime
 from fem_reference.member_results import MemberErrors, MemberPath, MemberResult
@@ -13,6 +13,7 @@ from fem_reference.pushover import Energy, Pushover, pushover
 from fem_reference.validity import remarks, wants_plane_stress
 
 __all__ = [
+    "HISTORY_SHARE",
     "Energy",
     "Fields",
     "HingeEvent",

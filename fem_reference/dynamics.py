@@ -1,4 +1,4 @@
-"""Motion of a frame in time: falls, impacts and sudden loads, step by step with `stepper.Stepper`.
+"""Motion of a frame in time: falls, impacts and sudden loads, followed by finer and finer models.
 
 An impact is plastic: a body shares its momentum with the mass that is lumped at its node, which vanishes as elements
 shrink, and stays on it. A support stops what it holds in an instant; a bearing pushes while it touches.
@@ -9,29 +9,33 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from capacity import InputError
-from fem_reference.frame import Frame
-from fem_reference.frame_mesh import build_frame
-from fem_reference.hinge_times import HingeTime, hinge_times, with_time_errors
-from fem_reference.member_results import MemberResult, member_results
-from fem_reference.modes import Masses, masses
-from fem_reference.paths import State, Trace
-from fem_reference.stepper import Stepper
-from scene import Motion, Scene
+from fem_reference.hinge_times import HingeTime, with_time_errors
+from fem_reference.member_results import MemberResult
+from fem_reference.time_history import STATES, TimeHistory, time_history
+from scene import Scene
 from scene.actions import unit_vector
+from scene.watched import extreme
 
 #: Estimated error that is aimed at when nothing else is said.
 TOLERANCE = 0.01
 #: Share of the largest displacement of any node that is rounding.
 _NOTHING = 1e-9
-_COARSEST = (10, 24, 250)
-#: Times at which whole members are kept.
-_STATES = 26
-_MOST_FIBRES = 48
-_MOST_REFINEMENTS = 4
+#: Elements a member, fibres a section and steps of the first model.
+_COARSEST = (20, 48, 500)
+#: Elements or steps are doubled when what they make of the estimate is more than this share of the tolerance, …
+_MATTERS = 1.0 / 3.0
+#: … as long as members × elements × steps stay below this: some ten seconds for the finest model.
+_LARGEST = 640_000
+#: What a difference at any time counts for beside one of the peak: it is nearly all a matter of being a little early
+#: or late.
+HISTORY_SHARE = 0.1
+
+Judged = Literal["history", "peak"]
 
 
 @dataclass(frozen=True)
@@ -59,6 +63,10 @@ class MotionResult:
         [s]
     hinges : tuple of HingeTime
         In the order in which they form.
+    utilisation : dict[str, float]
+        Largest |N| / N_max + |M| / M_yield anywhere in each member at any time, 1 at first yield [-].
+    energy_share : dict[str, float]
+        Largest elastic energy of each member over the largest of all of them together [-].
     kinetic, elastic, plastic, external : (k,) float
         Energies of motion and stored, plastic work, and work of the loads since the start [J].
     peak, peak_time : float
@@ -88,6 +96,8 @@ class MotionResult:
     members: dict[str, MemberResult]
     member_time: np.ndarray
     hinges: tuple[HingeTime, ...]
+    utilisation: dict[str, float]
+    energy_share: dict[str, float]
     kinetic: np.ndarray
     elastic: np.ndarray
     plastic: np.ndarray
@@ -110,8 +120,9 @@ def motion(
     tolerance: float = TOLERANCE,
     dissipation: float = 0.8,
     watch: Callable[[float], None] = lambda share: None,
+    of: Judged = "history",
 ) -> MotionResult:
-    """Follow ``scene``'s motion with finer models and steps until the estimated error is at most ``tolerance``.
+    """Follow ``scene``'s motion with more elements and steps, whichever it takes, until the estimated error is small.
 
     Parameters
     ----------
@@ -122,11 +133,14 @@ def motion(
         ρ of `stepper`: 1 dissipates nothing; the default takes out what a step cannot resolve.
     watch : callable
         Told the finished share of the current model's time.
+    of : str
+        What ``tolerance`` is for: ``"history"``, the displacement at any time, or ``"peak"``, its largest value and
+        where all nodes come to rest, and ten times as much at any time.
 
     Returns
     -------
     MotionResult
-        From the finest model; its ``error_estimate`` says whether ``tolerance`` was met within four refinements.
+        From the finest model; its errors say whether ``tolerance`` was met before the models became too large.
 
     Raises
     ------
@@ -141,31 +155,33 @@ def motion(
     if not 0.0 <= dissipation <= 1.0:
         raise InputError("dissipation", f"{dissipation:g} is not between 0 and 1", "0.8 is ordinary")
     started = time.perf_counter()
-    asked = scene.motion
+    asked, known = scene.motion, dict[tuple[int, int, int], TimeHistory]()
+
+    def followed(elements: int, fibres: int, steps: int) -> TimeHistory:
+        model = (elements, fibres, steps)
+        if model not in known:
+            known[model] = time_history(scene, asked, *model, dissipation, watch)
+        return known[model]
+
     elements, fibres, steps = _COARSEST
-    for _ in range(_MOST_REFINEMENTS):
-        elements, fibres, steps = 2 * elements, min(2 * fibres, _MOST_FIBRES), 2 * steps
-        fine = _follow(scene, asked, elements, fibres, steps, dissipation, watch)
-        others = (
-            _follow(scene, asked, elements // 2, fibres // 2, steps, dissipation, watch),
-            _follow(scene, asked, elements, fibres, steps // 2, dissipation, watch),
-        )
+    while True:
+        fine = followed(elements, fibres, steps)
+        others = (followed(elements // 2, fibres // 2, steps), followed(elements, fibres, steps // 2))
         node = asked.watch or max(fine.moved, key=lambda name: float(np.ptp(fine.moved[name], axis=0).max()))
         direction = np.array(unit_vector(asked.direction))
         path = fine.moved[node] @ direction
-        at = int(np.argmax(np.abs(path)))
-        scale = float(np.abs(path[at]))
-        if scale <= _NOTHING * max(float(np.abs(moved).max()) for moved in fine.moved.values()):
+        peak, at = extreme(path)
+        if abs(peak) <= _NOTHING * max(float(np.abs(moved).max()) for moved in fine.moved.values()):
             raise InputError("motion.direction", f'node "{node}" does not move that way', "watch another way or node")
-        error = sum(_gap(path, other.moved[node] @ direction) for other in others) / scale
-        if error <= tolerance:
+        gaps = [_gaps(fine, other, node, direction) for other in others]
+        by_elements, by_steps = (gap.size(of) / abs(peak) for gap in gaps)
+        finer = (1 + (by_elements >= _MATTERS * tolerance), 1 + (by_steps >= _MATTERS * tolerance))
+        cost = len(scene.members) * elements * steps * finer[0] * finer[1]
+        if by_elements + by_steps <= tolerance or cost > _LARGEST:
             break
+        elements, steps = finer[0] * elements, finer[1] * steps
     balance = fine.energies @ (1.0, 1.0, 1.0, -1.0)
     most = float(np.abs(fine.energies).max())
-    peaks = [abs(float(np.abs(other.moved[node] @ direction).max()) - scale) for other in others]
-    residuals = [
-        max(float(np.abs(np.subtract(other.rest[k], fine.rest[k])).max()) for k in fine.rest) for other in others
-    ]
     energies = [_gap(fine.energies, other.energies) for other in others]
     kinetic, elastic, plastic, external = fine.energies.T
     return MotionResult(
@@ -175,19 +191,21 @@ def motion(
         displacement=path,
         displacements=fine.moved,
         members=fine.members,
-        member_time=np.linspace(0.0, asked.duration, _STATES),
+        member_time=np.linspace(0.0, asked.duration, STATES),
         hinges=with_time_errors(fine.hinges, [other.hinges for other in others]),
+        utilisation=fine.utilisation,
+        energy_share=fine.energy_share,
         kinetic=kinetic,
         elastic=elastic,
         plastic=plastic,
         external=external,
-        peak=float(path[at]),
+        peak=peak,
         peak_time=at * asked.duration / steps,
-        peak_error=sum(peaks),
+        peak_error=sum(gap.peak for gap in gaps),
         residual=fine.rest,
-        residual_error=sum(residuals),
+        residual_error=sum(gap.rest for gap in gaps),
         energy_error=max(sum(energies), float(np.abs(balance - balance[0]).max())) / most,
-        error_estimate=error,
+        error_estimate=sum(gap.any_time for gap in gaps) / abs(peak),
         elements=elements,
         fibres=fibres,
         steps=steps,
@@ -195,86 +213,28 @@ def motion(
     )
 
 
+@dataclass(frozen=True)
+class _Gaps:
+    """Differences of one model from another: of the watched displacement at any time, its peak, and any rest [m]."""
+
+    any_time: float
+    peak: float
+    rest: float
+
+    def size(self, of: Judged) -> float:
+        return self.any_time if of == "history" else max(self.peak, self.rest, HISTORY_SHARE * self.any_time)
+
+
+def _gaps(fine: TimeHistory, other: TimeHistory, node: str, direction: np.ndarray) -> _Gaps:
+    path, coarse = fine.moved[node] @ direction, other.moved[node] @ direction
+    return _Gaps(
+        any_time=_gap(path, coarse),
+        peak=abs(abs(extreme(coarse)[0]) - abs(extreme(path)[0])),
+        rest=max(float(np.abs(np.subtract(other.rest[name], rest)).max()) for name, rest in fine.rest.items()),
+    )
+
+
 def _gap(fine: np.ndarray, other: np.ndarray) -> float:
     """Largest difference of two histories, one of which may have twice the steps."""
     stride = (len(fine) - 1) // (len(other) - 1)
     return float(np.abs(fine[::stride] - other).max())
-
-
-@dataclass(frozen=True)
-class _Followed:
-    """One model's motion: displacements by node, energies (k, 4), where it comes to rest, and its hinges."""
-
-    moved: dict[str, np.ndarray]
-    energies: np.ndarray
-    rest: dict[str, tuple[float, float]]
-    members: dict[str, MemberResult]
-    hinges: tuple[HingeTime, ...]
-
-
-def _follow(
-    scene: Scene,
-    asked: Motion,
-    elements: int,
-    fibres: int,
-    steps: int,
-    dissipation: float,
-    watch: Callable[[float], None],
-) -> _Followed:
-    frame = build_frame(scene, elements, fibres)
-    mass = masses(scene, frame)
-    state = State(frame, np.zeros(frame.size))
-    if any(asked.velocity):
-        state.release_dead_loads()
-    else:
-        state.carry_dead_loads()
-    state.load = 1.0
-    stepper, step = Stepper(state, mass, dissipation), asked.duration / steps
-    stepper.start(_velocity(scene, asked, frame, mass), step)
-    start = state.displacement.copy()
-    moved = {name: np.zeros((steps + 1, 2)) for name in scene.nodes}
-    energies = np.zeros((steps + 1, 4))
-    energies[0] = stepper.energies()
-    states = Trace()
-    state.record(states, 0.0)
-    stress = [state.response.stress]
-    for k in range(steps):
-        stepper.advance(step)
-        for name, dofs in frame.node_dofs.items():
-            moved[name][k + 1] = (state.displacement - start)[dofs[:2]]
-        energies[k + 1] = stepper.energies()
-        stress.append(state.response.stress)
-        if (k + 1) * (_STATES - 1) % steps < _STATES - 1:
-            state.record(states, 0.0)
-        watch((k + 1) / steps)
-    energies[:, 3] -= energies[0, 3]
-    within = np.append(0.0, (np.arange(1, steps + 1) - stepper.alpha_f) * step)
-    hinges = hinge_times(frame, scene, within, np.array(stress))
-    if frame.bearings.any() or frame.springs.any() or any(any(node.held) for node in scene.nodes.values()):
-        stepper.come_to_rest(step)
-    rest = {name: (state.displacement - start)[dofs[:2]] for name, dofs in frame.node_dofs.items()}
-    return _Followed(
-        moved,
-        energies,
-        {name: (float(x), float(y)) for name, (x, y) in rest.items()},
-        member_results(scene, frame, states),
-        hinges,
-    )
-
-
-def _velocity(scene: Scene, asked: Motion, frame: Frame, mass: Masses) -> np.ndarray:
-    """Velocity of every degree of freedom just after the start, (size,)."""
-    velocity, one = np.zeros(frame.size), np.zeros(frame.size)
-    for axis in (0, 1):
-        velocity[frame.dofs_of(axis)] = asked.velocity[axis]
-        one[frame.dofs_of(axis)] = 1.0
-    if frame.kinematics != "large":  # the middle of an element has an axial displacement of its own
-        velocity[frame.dofs[:, 6]] = frame.chords.span @ np.array(asked.velocity) / frame.chords.length
-    lumped = mass.momentum(frame, one)
-    for name, node in scene.nodes.items():
-        if any(node.velocity):
-            dofs = frame.node_dofs[name][:2]
-            brought = node.mass * (np.array(node.velocity) - velocity[dofs])
-            velocity[dofs] += brought / lumped[dofs]
-    velocity[frame.fixed] = 0.0
-    return velocity

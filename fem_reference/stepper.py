@@ -139,7 +139,7 @@ class Stepper:
 
         inertia = (1.0 - self.alpha_m) / (self.beta * h * h)
         kinetic = float(v @ self.mass.momentum(frame, v))
-        found = self._solve(d, balance, inertia, 1.0 - self.alpha_f, kinetic)
+        found = self._solve(d + h * v, balance, inertia, 1.0 - self.alpha_f, kinetic)
         if found is None:
             return False
         ahead = acceleration(found[0])

@@ -1,5 +1,7 @@
 """Where a beam is not enough, by the reference's own word."""
 
+import math
+
 from fem_reference.plane.bodies import plane_fault
 from scene import Scene
 
@@ -20,19 +22,26 @@ def wants_plane_stress(scene: Scene) -> bool:
     return scene.reference == "auto" and bool(_stocky(scene)) and plane_fault(scene) is None
 
 
-def remarks(scene: Scene) -> tuple[str, ...]:
-    """What to mind about beam theory and kinematics in ``scene``; empty when there is nothing."""
+def remarks(scene: Scene, moved: float = 0.0) -> tuple[str, ...]:
+    """What to mind about beam theory and kinematics in ``scene``; empty when there is nothing.
+
+    Parameters
+    ----------
+    scene : Scene
+    moved : float
+        How far its motion goes, where it has one and that is known [m].
+    """
     done = "it is followed as" if wants_plane_stress(scene) else "beam theory is not enough there: it wants"
     found = [
         f"members.{name}: L/h = {ratio:.2g} is not above {SLENDER:g}; {done} a plane stress continuum"
         for name, ratio in _stocky(scene).items()
     ]
-    if scene.pushed is not None and scene.kinematics == "small" and scene.members:
-        furthest = max(map(abs, scene.pushed.stops()))
-        longest = max(scene.axis(name)[2] for name in scene.members)
-        if furthest > SMALL_ROTATION * longest:
+    way = {"push": max(map(abs, scene.pushed.stops()), default=0.0) if scene.pushed else 0.0, "motion": abs(moved)}
+    for what, furthest in way.items():
+        longest = max((scene.axis(name)[2] for name in scene.members), default=math.inf)
+        if scene.kinematics == "small" and furthest > SMALL_ROTATION * longest:
             found.append(
-                f'the push goes {furthest / longest:.2g} of a member\'s length; kinematics = "large" follows that'
+                f'the {what} goes {furthest / longest:.2g} of a member\'s length; kinematics = "large" follows that'
             )
     return tuple(found)
 

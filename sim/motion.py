@@ -12,7 +12,10 @@ import pymunk
 from capacity import InputError
 from scene import Motion, Scene
 from scene.actions import unit_vector
-from sim.joint import IMPLICIT_EULER
+from scene.watched import extreme
+from sim.borne_forces import forces_on
+from sim.joint import IMPLICIT_EULER, DuctileJoint
+from sim.member_joints import JointPlace
 from sim.members import Assembly, assemble
 from sim.model import Model
 from sim.settling import SETTLING_STEP, settle
@@ -37,9 +40,13 @@ class Course:
     displacement : (k,) float
         Along the watched direction since the start [m].
     peak, peak_time : float
-        Largest displacement by size [m], and when [s].
+        Largest displacement by size [m], and when [s]; between steps where it lies there.
     residual : dict[str, (float, float)]
         Displacements x, y of each node once it is at rest under dead and step loads [m].
+    force : (k, joints, 3) float
+        N [N], Q [N] and M [N m] of the members' joints after each step.
+    places : tuple of JointPlace
+        Where these joints are.
     bodies, joints : int
         Dynamic bodies, and joints of the members.
     steps : int
@@ -60,6 +67,8 @@ class Course:
     peak: float
     peak_time: float
     residual: dict[str, tuple[float, float]]
+    force: np.ndarray
+    places: tuple[JointPlace, ...]
     bodies: int
     joints: int
     steps: int
@@ -67,6 +76,11 @@ class Course:
     newton_steps: float
     unconverged: int
     dissipated: float
+
+    @property
+    def seconds_per_simulated_second(self) -> float:
+        """Time that a second of simulation takes; its inverse is the real-time factor."""
+        return self.seconds / float(self.time[-1])
 
 
 def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda share: None) -> Course:
@@ -97,31 +111,36 @@ def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda s
     start = {name: np.array(node.now()) for name, node in assembly.nodes.items()}
     paths = {name: np.zeros((steps + 1, 2)) for name in assembly.nodes}
     seconds, newton_before = 0.0, assembly.structure.newton_steps
+    bearing: list[tuple[tuple[DuctileJoint, ...], np.ndarray]] = []
     for k in range(steps):
         began = time.thread_time()
         assembly.step(model.dt, sudden=True)
         seconds += time.thread_time() - began
+        bearing.append((assembly.joints, assembly.structure.force))
         for name, point in assembly.nodes.items():
             paths[name][k + 1] = point.ahead(model.dt) - start[name]
         if k % 64 == 0:
             watch(k / steps)
     along = {name: path @ unit_vector(asked.direction) for name, path in paths.items()}
     node = asked.watch or max(along, key=lambda name: float(np.ptp(along[name])))
-    peak = int(np.argmax(np.abs(along[node])))
+    peak, peak_at = extreme(along[node])
     newton_steps = (assembly.structure.newton_steps - newton_before) / steps
+    joints, places = assembly.joints[: len(assembly.places)], assembly.places
     times, unconverged = model.dt * np.arange(steps + 1), assembly.structure.unconverged
-    _come_to_rest(assembly, model.dt, _REST * abs(float(along[node][peak])))
+    _come_to_rest(assembly, model.dt, _REST * abs(peak))
     structure = assembly.structure
     rest = {name: np.array(point.now()) - start[name] for name, point in assembly.nodes.items()}
     return Course(
         node=node,
         time=times,
         displacement=along[node],
-        peak=float(along[node][peak]),
-        peak_time=float(times[peak]),
+        peak=peak,
+        peak_time=model.dt * peak_at,
         residual={name: (float(x), float(y)) for name, (x, y) in rest.items()},
+        force=forces_on(joints, bearing),
+        places=places,
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
-        joints=len(assembly.places),
+        joints=len(places),
         steps=steps,
         seconds=seconds,
         newton_steps=newton_steps,

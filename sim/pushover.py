@@ -11,6 +11,7 @@ import numpy as np
 import pymunk
 
 from scene import Scene
+from sim.borne_forces import forces_on
 from sim.joint import DuctileJoint
 from sim.load_driver import LoadDriver
 from sim.member_joints import JointPlace
@@ -163,7 +164,7 @@ def push_over(
         displacement=displacement,
         load=load,
         load_at_distances=np.concatenate(passed),
-        force=_borne(assembly.joints[: len(assembly.places)], bearing),
+        force=forces_on(assembly.joints[: len(assembly.places)], bearing),
         places=assembly.places,
         bodies=sum(body.body_type == pymunk.Body.DYNAMIC for body in structure.bodies),
         joints=len(assembly.places),
@@ -174,18 +175,6 @@ def push_over(
         unconverged=structure.unconverged,
         dissipated=float(structure.dissipated.sum()),
     )
-
-
-def _borne(joints: tuple[DuctileJoint, ...], bearing: list[tuple[tuple[DuctileJoint, ...], np.ndarray]]) -> np.ndarray:
-    """Forces on ``joints`` from those of all joints that there were after each step, (k, joints, 3)."""
-    force, column = np.zeros((len(bearing) + 1, len(joints), 3)), {joint: i for i, joint in enumerate(joints)}
-    k = 1
-    for there, steps in itertools.groupby(bearing, key=lambda step: step[0]):
-        own = [(i, column[joint]) for i, joint in enumerate(there) if joint in column]
-        rows = np.array([row for _, row in steps])
-        force[k : k + len(rows), [c for _, c in own]] = rows[:, [i for i, _ in own]]
-        k += len(rows)
-    return force
 
 
 def _wanted(leg: np.ndarray, steps: int, driver: LoadDriver, near: float) -> Iterator[float]:

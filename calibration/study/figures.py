@@ -10,9 +10,8 @@ import matplotlib
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatter, StrMethodFormatter
 
-from calibration.figures import FAINT, INK, MODEL, REFERENCE, STYLE, svg
+from calibration.figures import FAINT, INK, MODEL, REFERENCE, STYLE, logarithmic, svg
 from calibration.study.outcome import Outcome, speed
 from calibration.study.points import HARD_STEPS, KINDS, MASS_RATIOS, STIFFNESS_FACTORS, HardPoint, step_name
 
@@ -68,10 +67,7 @@ def frontier(study: Outcome) -> Figure:
         names.text(0.0, 1.0, "On the frontier", va="top", weight="bold", transform=names.transAxes)
         size = min(7.5, 120.0 / max(1, len(best)))
         names.text(0.0, 0.95, "\n".join(lines), va="top", size=size, linespacing=1.25, transform=names.transAxes)
-        axes.set(xscale="log", yscale="log")
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-            axis.set_minor_formatter(LogFormatter(minor_thresholds=(1.5, 0.8)))
+        logarithmic(axes)
         axes.set_xlabel("processor time for a simulated second [ms]")
         axes.set_ylabel("path error [% of peak load]")
         figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=8)

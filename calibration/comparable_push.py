@@ -23,7 +23,7 @@ from capacity import Material, StressStrain
 from fem_reference import wants_plane_stress
 from scene import Scene
 from scene.quantities import Acceleration, Force, ForcePerLength, Length, Moment, Speed
-from sim import Model, Push, push_over
+from sim import PACE, Model, Pace, Push, push_over
 
 #: ε: what geometry adds is this much smaller, and rounding, some 1e-12 of a deformation, still far smaller.
 SHARE = 1e-3
@@ -31,13 +31,13 @@ SHARE = 1e-3
 _SECOND_ORDER = {"small": -1.0, "p-delta": 1.0 / SHARE - 1.0}
 
 
-def push_model(scene: Scene, model: Model, distances: np.ndarray) -> Push:
+def push_model(scene: Scene, model: Model, distances: np.ndarray, pace: Pace = PACE) -> Push:
     """Push ``model`` through ``distances`` [m] as the reference of ``scene`` is pushed."""
     model = replace(model, shear_yields=model.shear_yields and wants_plane_stress(scene))
     if scene.kinematics == "large":
-        return push_over(scene, model, distances)
+        return push_over(scene, model, distances, pace=pace)
     more = _SECOND_ORDER[scene.kinematics]
-    push = push_over(shrunk(scene, SHARE), model, SHARE * distances, second_order=more)
+    push = push_over(shrunk(scene, SHARE), model, SHARE * distances, second_order=more, pace=pace)
     return replace(
         push,
         displacement=push.displacement / SHARE,

@@ -36,6 +36,16 @@ def what_limits(best: Tried, trials: Sequence[Tried], failures: Sequence[Failure
     return "; ".join(causes)
 
 
+def branch_remarks(branches_at: float | None) -> tuple[str, ...]:
+    """That a second path branches off, where one does."""
+    if branches_at is None:
+        return ()
+    return (
+        f"compared up to {branches_at:.4g} m: from there on the structure leaves this path for another at the "
+        "slightest disturbance, as a symmetric frame sways; add a small load that disturbs it and that is followed",
+    )
+
+
 def shear_remarks(scene: Scene, answer: Push | Course) -> tuple[str, ...]:
     """Members in which a model comes to more than Q_max beside a reference of beams, which do not yield in shear."""
     most: dict[str, float] = {}

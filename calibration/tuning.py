@@ -5,19 +5,32 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import msgspec
+
 from calibration.comparable_push import push_model
 from calibration.errors import Findings, compare, find
 from calibration.fitting import Fit, LoadCase, fit, fitted
 from calibration.frequencies import model_frequency, reference_frequency
-from calibration.limits import shear_remarks, what_limits
+from calibration.limits import branch_remarks, shear_remarks, what_limits
 from calibration.member_plans import MemberPlan, member_plans
 from calibration.planner import candidates, candidates_to_fit, relative_cost
 from calibration.saving import give_less
 from calibration.trials import Failure, Trial
 from capacity import Capacity, InputError
-from fem_reference import NotConverged, PlanePush, PushAnswer, Pushover, default_tolerance, push_over, remarks
+from fem_reference import (
+    NotConverged,
+    PlanePush,
+    PushAnswer,
+    Pushover,
+    branches_at,
+    default_tolerance,
+    push_over,
+    remarks,
+    wants_plane_stress,
+)
 from scene import Scene
-from sim import Model, SolverError
+from scene.quantities import Length
+from sim import Model, Pace, SolverError
 
 #: The reference must be this many times better than the target, …
 REFERENCE_MARGIN = 5.0
@@ -25,6 +38,8 @@ REFERENCE_MARGIN = 5.0
 REFERENCE_TOLERANCE = 5e-4
 #: Points of a path below which there is nothing to compare.
 _FEWEST_POINTS = 10
+#: Share of the target error that inertia may take up in a push.
+_INERTIA_SHARE = 1.0 / 6.0
 
 
 @dataclass(frozen=True)
@@ -53,6 +68,8 @@ class Calibration:
         Parameters fitted to a continuum, checked on a load case that the fit did not see; None where beam theory holds.
     target_error : float
         Largest `Errors.path_max` wanted [-].
+    branches_at : float or None
+        Displacement at which a second path branches off, where the comparison ends [m].
     """
 
     name: str
@@ -66,6 +83,7 @@ class Calibration:
     findings: Findings
     fit: Fit | None
     target_error: float
+    branches_at: float | None = None
 
     @property
     def target_met(self) -> bool:
@@ -91,9 +109,9 @@ class Calibration:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What to mind about beam theory, kinematics and shear; empty when there is nothing."""
+        """What to mind about beam theory, kinematics, stability and shear; empty when there is nothing."""
         of_beams = shear_remarks(self.scene, self.best.push) if isinstance(self.reference, Pushover) else ()
-        return (*remarks(self.scene), *of_beams)
+        return (*remarks(self.scene), *branch_remarks(self.branches_at), *of_beams)
 
     @property
     def fitted_scene(self) -> Scene:
@@ -141,14 +159,16 @@ def calibrate(
             "plane.mesh", "joints stand for lengths of members, which a mesh has none of", "describe members"
         )
     tolerance = min(target_error / REFERENCE_MARGIN, default_tolerance(scene))
-    reference = push_over(scene, tolerance, lambda share: watch("reference", share))
+    branches = None if wants_plane_stress(scene) else branches_at(scene)
+    followed = scene if branches is None else _pushed_to(scene, branches)
+    reference = push_over(followed, tolerance, lambda share: watch("reference", share))
     if len(reference.load) < _FEWEST_POINTS:
         raise NotConverged(f"the reference ends before there is anything to compare: {reference.outcome}")
     if not reference.load.any():
         fault = f'the loads do not move node "{scene.push.node}" that way'
         raise InputError("push.direction", fault, "push it in the direction in which they do")
     plans = member_plans(scene, reference, target_error)
-    bench = Bench(scene, reference)
+    bench = Bench(scene, reference, target_error)
     models = candidates_to_fit(scene) if bench.fits else candidates(scene, plans)
     for i, model in enumerate(models):
         watch(f"model {i + 1}: {model.rule} {model.joints}, {model.law}", i / len(models))
@@ -178,7 +198,16 @@ def calibrate(
         findings=find(scene, reference, best.push, frequency),
         fit=best.fit,
         target_error=target_error,
+        branches_at=branches,
     )
+
+
+def _pushed_to(scene: Scene, distance: float) -> Scene:
+    if distance == 0.0:
+        raise NotConverged(
+            "the structure is not stable under its own weight and dead loads; support it, or make it stiffer"
+        )
+    return msgspec.structs.replace(scene, pushed=msgspec.structs.replace(scene.push, distance=Length(distance)))
 
 
 class Bench:
@@ -190,8 +219,9 @@ class Bench:
     failures : list of Failure
     """
 
-    def __init__(self, scene: Scene, reference: PushAnswer) -> None:
+    def __init__(self, scene: Scene, reference: PushAnswer, target_error: float) -> None:
         self.scene, self.reference = scene, reference
+        self._pace = Pace(most_inertia=_INERTIA_SHARE * target_error)
         self.trials: list[Trial] = []
         self.failures: list[Failure] = []
         self._known: dict[tuple[object, ...], Trial | None] = {}
@@ -218,10 +248,11 @@ class Bench:
         try:
             found = self.fit(model) if self.fits else None
             scene = self.scene if found is None else fitted(self.scene, model, found.parameters)[0]
-            push = push_model(scene, model, self.reference.displacement)
+            push = push_model(scene, model, self.reference.displacement, self._pace)
         except SolverError as error:
             self.failures.append(Failure(model, str(error)))
             return None
+        self._pace = replace(self._pace, duration=push.duration)
         cost = relative_cost(model, self.scene.members, push.newton_steps)
         trial = Trial(model, push, compare(self.reference, push), cost, found)
         self.trials.append(trial)

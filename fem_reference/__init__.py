@@ -1,6 +1,7 @@
 """What the continuum does: elastic–plastic frames and plane stress on scikit-fem, each with an error estimate."""
 
 from fem_reference.beam_fields import motion_field_files, push_field_files
+from fem_reference.branching import branches_at
 from fem_reference.dynamics import HISTORY_SHARE, MotionResult, motion
 from fem_reference.hinge_events import HingeEvent
 from fem_reference.hinge_times import HingeTime
@@ -27,6 +28,7 @@ __all__ = [
     "PlanePush",
     "PushAnswer",
     "Pushover",
+    "branches_at",
     "default_tolerance",
     "field_files",
     "motion",

@@ -48,12 +48,21 @@ class BandedSolver:
         numpy.linalg.LinAlgError
             When K is singular.
         """
+        return self.solve_with_sign(matrices, diagonal, *right)[1]
+
+    def solve_with_sign(
+        self, matrices: np.ndarray, diagonal: np.ndarray, *right: np.ndarray
+    ) -> tuple[float, np.ndarray]:
+        """The sign of det K beside what `solve` returns, and raises."""
         entries = matrices.ravel()[self._kept]
         band = np.bincount(self._slot, weights=entries, minlength=self._shape[0] * self._shape[1])
         band = band.reshape(self._shape)
         band[:, 2 * self._reach] += diagonal[self.free]
         columns = np.array(right).T
-        *_, answer, fault = dgbsv(self._reach, self._reach, band.T, columns, overwrite_ab=True, overwrite_b=True)
+        factors, swaps, answer, fault = dgbsv(
+            self._reach, self._reach, band.T, columns, overwrite_ab=True, overwrite_b=True
+        )
         if fault:
             raise np.linalg.LinAlgError("the matrix is singular")
-        return np.asarray(answer)
+        odd = (factors[2 * self._reach] < 0.0).sum() + (swaps != np.arange(len(swaps))).sum()
+        return -1.0 if odd % 2 else 1.0, np.asarray(answer)

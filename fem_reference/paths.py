@@ -111,6 +111,19 @@ class State:
         points.plastic.append(self.plastic)
         points.imbalance = self.imbalance
 
+    @property
+    def unique(self) -> bool:
+        """Whether the path through this state is the only one, and stable, while the way of the loads is prescribed.
+
+        K bordered with the load pattern p has a determinant with the sign of det K · pᵀ K⁻¹ p. That is positive for a
+        structure that stands, at limit points of the load both change, and where a second path branches off one does
+        (W. T. Koiter, On the stability of elastic equilibrium, 1945; for plastic structures R. Hill, 1958).
+        """
+        response, free = self.response, self.solver.free
+        pattern = self.frame.pattern[free]
+        sign, answer = self.solver.solve_with_sign(response.matrices, response.springs, pattern)
+        return sign * float(pattern @ answer[:, 0]) > 0.0
+
     def carry_dead_loads(self) -> None:
         """Apply dead loads and settlements together."""
         if not self.frame.weight.any() and not self.frame.settlement.any():
@@ -162,6 +175,7 @@ class State:
             else:
                 raise NotConverged(f"no equilibrium beyond a {what} of {position:.6g} {unit}".rstrip())
 
+    @np.errstate(over="ignore", invalid="ignore")  # of iterates that are far astray, which are given up
     def _step(self, goal: float, c: np.ndarray, e: float) -> bool:
         """Newton's method to c · d + e λ = ``goal``; whether it converged and was accepted."""
         frame, free = self.frame, self.solver.free
@@ -188,12 +202,13 @@ class State:
                 return False
             rise = (gap - float(c[free] @ answer[:, 0])) / (float(c[free] @ answer[:, 1]) + e)
             change = answer[:, 0] + rise * answer[:, 1]
-            if not np.isfinite(rise):
+            here = float(residual @ change)
+            if not np.isfinite([rise, here]).all():
                 return False
             reactions = float(response.internal[frame.fixed] @ d[frame.fixed])
             work = max(self._work, abs(float(applied @ d)) + abs(reactions))
             on_goal = abs(gap) <= 1e-9 * max(abs(goal), abs(distance))
-            if abs(residual @ change) <= tolerance * work and on_goal:
+            if abs(here) <= tolerance * work and on_goal:
                 # The load itself may still be out of balance: where every section yields it moves nothing, and
                 # does no work.
                 left = residual + rise * frame.pattern[free]
@@ -201,14 +216,14 @@ class State:
                 self._work = work
                 return True
             # Line search: not so far that the out-of-balance forces explode.
-            here, there, length = float(residual @ change), np.inf, 1.0
+            there, length = np.inf, 1.0
             for cut in range(_MOST_CUTS):
                 if cut:
                     length *= min(max(here / (here - there), 0.1), 0.5)
                 ahead, factor = d.copy(), load + length * rise
                 ahead[free] += length * change
                 response, applied, residual = self._balance(ahead, factor)
-                there = float(residual @ change)
+                there = float(np.nan_to_num(residual @ change, nan=np.inf))
                 if not on_goal or abs(there) <= max(_GROWTH * abs(here), TOLERANCE * work):
                     break
             d, load = ahead, factor

@@ -14,7 +14,7 @@ from sim.members import Assembly, assemble  # noqa: E402
 from sim.model import MemberModel, Model  # noqa: E402
 from sim.modes import natural_modes  # noqa: E402
 from sim.motion import Course, follow, set_going  # noqa: E402
-from sim.pushover import Push, push_over  # noqa: E402
+from sim.pushover import PACE, Pace, Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
 from sim.rules import RULES, Rule, equal, lobatto, radau  # noqa: E402
 from sim.structure import SolverError, Structure  # noqa: E402
@@ -24,6 +24,7 @@ __all__ = [
     "AVERAGE_ACCELERATION",
     "IMPLICIT_EULER",
     "LAWS",
+    "PACE",
     "RULES",
     "Assembly",
     "Bearing",
@@ -39,6 +40,7 @@ __all__ = [
     "Limits",
     "MemberModel",
     "Model",
+    "Pace",
     "Push",
     "Recorder",
     "Recording",

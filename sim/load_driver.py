@@ -41,6 +41,8 @@ class LoadDriver:
         How far the node has come since the driver was made [m].
     factor : float
         By what the loads are multiplied in the last step [-].
+    way : float
+        What the loads have gone since then: by ``factor`` it is their work [J].
     """
 
     def __init__(self, assembly: Assembly, node: str, direction: tuple[float, float], reach: float) -> None:
@@ -54,7 +56,7 @@ class LoadDriver:
         self._both = self._own = 0.0
         self._gap = 1e-9 * size**0.5
         self._wanted = 0.0
-        self.displacement = self.factor = 0.0
+        self.displacement = self.factor = self.way = 0.0
 
     def _take(self) -> None:
         """Take the assembly as it is now."""
@@ -101,6 +103,7 @@ class LoadDriver:
                 "joints, or look for a structure that its loads carry away"
             )
         moved, worked = self.displacement - before, self._gap - self.factor / self._stiffness
+        self.way += worked
         keep = math.exp(-dt / _MEMORY)
         self._both = keep * self._both + worked * moved
         self._own = keep * self._own + moved * moved

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -21,15 +22,36 @@ from sim.second_order import SecondOrder
 from sim.settling import settle
 from sim.structure import SolverError
 
-#: How long a push takes in the simulation [s]: slow against the vibrations of ordinary members, which the implicit
-#: Euler scheme damps.
-DURATION = 4.0
-_EASE = 0.1
+# Where inertia bears too much, a push takes longer, up to so many times.
+_LONGEST = 8.0
+# Share of a way over which the node is sped up, and slowed down.
+_EASE = 0.2
 # Before it turns or ends, a push waits until the node is this near to where it shall be, as a share of the whole way;
 # at most so long, as a share of the time that the way took.
 _NEAR, _LONGEST_WAIT = 1e-4, 0.5
 # A push of which more steps than this share found no solution is none.
 _MOST_UNCONVERGED = 0.02
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How fast a structure is pushed.
+
+    Attributes
+    ----------
+    duration : float
+        Time for every way from one turn to the next, but for what the node then still needs to get there [s]: slow
+        against the vibrations of ordinary members, which the implicit Euler scheme damps.
+    most_inertia : float
+        Where inertia bears more of the largest load than this, the push is taken again in more time [-].
+    """
+
+    duration: float = 4.5
+    most_inertia: float = 1e-3
+
+
+#: A pace for all.
+PACE = Pace()
 
 
 @dataclass(frozen=True)
@@ -62,6 +84,10 @@ class Push:
         Solves that ended above the solver's tolerance.
     dissipated : float
         Plastic work in the joints [J].
+    duration : float
+        Time for every way from one turn to the next [s].
+    inertia : float
+        What speeding the bodies up adds to the load, over the largest load [-].
     """
 
     displacement: np.ndarray
@@ -77,6 +103,8 @@ class Push:
     newton_steps: float
     unconverged: int
     dissipated: float
+    duration: float
+    inertia: float
 
     @property
     def seconds_per_simulated_second(self) -> float:
@@ -96,6 +124,7 @@ def push_over(
     watch: Callable[[float], None] = lambda share: None,
     *,
     second_order: float = 0.0,
+    pace: Pace = PACE,
 ) -> Push:
     """Push ``scene`` with rigid bodies under displacement control.
 
@@ -107,11 +136,12 @@ def push_over(
     model : Model
     distances : (k,) float
         Distances of the pusher one after the other, from 0 [m]; each gets about an equal share of the time, those at
-        a turn a larger one; every way from one turn to the next takes `DURATION`, and what the node then still needs.
+        a turn a larger one.
     watch : callable
         Told the finished share of the push, 0 to 1.
     second_order : float
         How many times more the second-order moments act than exact positions make them; see `sim.second_order` [-].
+    pace : Pace
 
     Returns
     -------
@@ -122,17 +152,33 @@ def push_over(
     SolverError
         When a step cannot be taken, too many find no solution, or the pushed node leaves its way.
     """
+    push = _push(scene, model, distances, watch, second_order, pace.duration)
+    longest = _LONGEST * PACE.duration
+    if push.inertia > pace.most_inertia and pace.duration < longest:
+        longer = min(longest, 1.1 * pace.duration * math.sqrt(push.inertia / pace.most_inertia))
+        push = _push(scene, model, distances, watch, second_order, longer)
+    return push
+
+
+def _push(
+    scene: Scene,
+    model: Model,
+    distances: np.ndarray,
+    watch: Callable[[float], None],
+    second_order: float,
+    duration: float,
+) -> Push:
     assembly = assemble(scene, model, shapes=False)
     moments = SecondOrder(assembly, scene.push.node, scene.push_direction(), second_order)
     settle(scene, assembly, 1e-9 * scene.push.way(), moments.act)
     turns = [0, *(1 + np.flatnonzero(np.diff(np.sign(np.diff(distances))))).tolist(), len(distances) - 1]
     legs = [distances[a : b + 1] for a, b in itertools.pairwise(turns)]
-    steps_a_leg = max(1, round(DURATION / model.dt))
+    steps_a_leg = max(1, round(duration / model.dt))
     planned = steps_a_leg * len(legs)
     way = float(np.abs(distances).max())
     driver = LoadDriver(assembly, scene.push.node, scene.push_direction(), way)
     newton_before = assembly.structure.newton_steps
-    taken, factors, ends = [0.0], [0.0], [0]
+    taken, factors, ways, kinetic, ends = [0.0], [0.0], [0.0], [0.0], [0]
     bearing: list[tuple[tuple[DuctileJoint, ...], np.ndarray]] = []
     seconds = 0.0
     for leg in legs:
@@ -147,6 +193,8 @@ def push_over(
             taken.append(driver.displacement)
             factors.append(driver.factor)
             structure = assembly.structure
+            ways.append(driver.way)
+            kinetic.append(structure.energy.kinetic)
             bearing.append((assembly.joints, structure.force))
             if structure.unconverged > _MOST_UNCONVERGED * planned:
                 count, so_far = structure.unconverged, len(bearing)
@@ -174,7 +222,22 @@ def push_over(
         newton_steps=(structure.newton_steps - newton_before) / steps,
         unconverged=structure.unconverged,
         dissipated=float(structure.dissipated.sum()),
+        duration=duration,
+        inertia=_inertia(np.array(kinetic), np.array(ways), ends, float(np.abs(load).max())),
     )
+
+
+def _inertia(kinetic: np.ndarray, way: np.ndarray, ends: list[int], load: float) -> float:
+    """Kinetic energy gained or lost while speeds change, over the work of ``load`` on the way meanwhile."""
+    most = 0.0
+    for first, last in itertools.pairwise(ends):
+        window = max(1, round(_EASE * (last - first)))
+        gained, worked = (
+            np.abs(values[first + window : last + 1] - values[first : last + 1 - window])
+            for values in (kinetic, load * way)
+        )
+        most = max(most, float((gained / np.maximum(worked, 0.5 * worked.mean())).max()))
+    return most
 
 
 def _wanted(leg: np.ndarray, steps: int, driver: LoadDriver, near: float) -> Iterator[float]:

@@ -1,0 +1,69 @@
+"""Pushes that are slow enough for what they push, and that end where a second path branches off."""
+
+import math
+
+import numpy as np
+import pytest
+from frames import frame_scene, push_towards
+
+import sim
+from calibration import calibrate
+from calibration.comparable_push import push_model
+from fem_reference import branches_at
+from scene import Scene
+from sim import Model, Pace
+
+STRONG = "fy=1e5 MPa, E=210 GPa, rho=7850 kg/m^3"
+LENGTH = 2.0
+
+
+def column(head: str, direction: tuple[int, int], distance: float, disturbed: float = 0.0) -> Scene:
+    """An upright elastic column, clamped at its foot; ``disturbed`` is a share of the load that acts across."""
+    nodes = {"A": (0.0, 0.0, "clamped"), "B": (0.0, LENGTH, head)}
+    loads = [f'node = "B"\nforce = [{disturbed!r}, -1.0]'] if disturbed else []
+    push = push_towards("B", direction, distance)
+    return frame_scene(
+        nodes, [("A", "B")], push, loads, section="rectangle 20x20 mm", material=STRONG, kinematics="large"
+    )
+
+
+@pytest.mark.parametrize(("head", "effective"), [("free", 2.0), ("roller-y", 0.699156), ("guided-y", 0.5)])
+def test_a_column_branches_off_at_eulers_load(head: str, effective: float) -> None:
+    """π² EI / (k L)², k of Timoshenko & Gere, Theory of elastic stability, chapter 2; the way there is P L / EA."""
+    probe = column(head, (0, -1), 1e-3).capacity("A-B")
+    buckled = math.pi**2 * probe.EI / (effective * LENGTH) ** 2 * LENGTH / probe.EA
+    found = branches_at(column(head, (0, -1), 2.0 * buckled))
+    assert found is not None
+    # The last point before, of fifty, with twenty elements.
+    assert found / buckled == pytest.approx(1.0, abs=0.03)
+    assert branches_at(column(head, (0, -1), 0.9 * buckled)) is None
+
+
+def test_a_disturbed_column_has_one_path() -> None:
+    assert branches_at(column("free", (0, -1), 0.05, disturbed=0.01)) is None
+
+
+def test_calibration_compares_up_to_there_and_says_so() -> None:
+    probe = column("free", (0, -1), 1e-3).capacity("A-B")
+    buckled = math.pi**2 * probe.EI / (2.0 * LENGTH) ** 2 * LENGTH / probe.EA
+    result = calibrate(column("free", (0, -1), 2.0 * buckled))
+    assert result.target_met
+    assert result.branches_at == pytest.approx(buckled, rel=0.03)
+    assert result.reference.displacement[-1] == pytest.approx(result.branches_at)
+    assert any("slightest disturbance" in remark for remark in result.remarks)
+
+
+def test_heavy_nodes_are_pushed_slowly() -> None:
+    """A tonne at the tip of a slender cantilever, of whose load inertia would bear some per cent."""
+    nodes = {"A": (0.0, 0.0, "clamped"), "B": (LENGTH, 0.0, 'free"\nmass = "1 t')}
+    push = push_towards("B", (0, -1), 0.1)
+    scene = frame_scene(nodes, [("A", "B")], push, section="rectangle 30x50 mm", material=STRONG)
+    way, model = np.linspace(0.0, 0.1, 101), Model("lobatto", 5, "elastic-plastic")
+    exact = 3.0 * scene.capacity("A-B").EI / LENGTH**3 * way
+    pushes = [push_model(scene, model, way, Pace(most_inertia=most)) for most in (1.0, 1e-3)]
+    off = [np.abs(push.load_at_distances - exact).max() / exact.max() for push in pushes]
+    assert off[0] > 5e-3
+    assert pushes[0].inertia == pytest.approx(off[0], rel=0.5)
+    assert off[1] < 2e-3
+    assert pushes[1].inertia <= 1e-3
+    assert sim.PACE.duration == pushes[0].duration < pushes[1].duration

@@ -4,12 +4,26 @@ from __future__ import annotations
 
 import pymunk
 
+from capacity import InputError
 from sim.joint import DuctileJoint
-from sim.structure import Structure
+from sim.structure import Structure, raise_after_step
 
 
-def group(constraint: pymunk.Constraint, space: pymunk.Space) -> None:  # noqa: ARG001
-    """Group all ductile joints of ``space`` into structures; those whose company has not changed stay as they are."""
+def group(constraint: pymunk.Constraint, space: pymunk.Space) -> None:
+    """Group all ductile joints of ``space`` into structures; those whose company has not changed stay as they are.
+
+    Chipmunk calls this, and has no use for an exception: the space raises it when its step is over. Until then joints
+    that have no structure do nothing.
+    """
+    try:
+        _group(space)
+    except Exception as error:
+        asking = (c for c in space.constraints if isinstance(c, DuctileJoint) and c.pre_solve is group)
+        if next(asking) is constraint:  # all of them ask, and fail alike
+            raise_after_step(space, error)
+
+
+def _group(space: pymunk.Space) -> None:
     joints = [c for c in space.constraints if isinstance(c, DuctileJoint) and not c.broken]
     parent: dict[pymunk.Body, pymunk.Body] = {}
 
@@ -21,6 +35,9 @@ def group(constraint: pymunk.Constraint, space: pymunk.Space) -> None:  # noqa: 
 
     for joint in joints:
         ends = [body for body in (joint.a, joint.b) if body.body_type == pymunk.Body.DYNAMIC]
+        if any(body.space is None for body in ends):
+            x, y = joint.at
+            raise InputError(f"joint at {x:g}, {y:g}", "a body of it is not in the space", "space.add(body)")
         if len(ends) == 2:
             parent[root(ends[0])] = root(ends[1])
     groups: dict[pymunk.Body, list[DuctileJoint]] = {}

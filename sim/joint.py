@@ -12,6 +12,7 @@ import pymunk
 from capacity import InputError
 from capacity.behaviour import from_elastic_rotation, reduced, stiffness_and_damping
 from sim import chipmunk
+from sim.joint_checks import check_bodies, check_law, check_numbers
 from sim.kernels import compiled_callbacks
 from sim.laws import ElasticPlastic, Law
 from sim.limits import NO_LIMITS, Limits
@@ -55,8 +56,8 @@ class DuctileJoint(pymunk.Constraint):
 
     Raises
     ------
-    ValueError
-        When neither body is dynamic, or a number is not finite.
+    InputError
+        When neither body is dynamic, or something else will not do.
     """
 
     def __init__(
@@ -74,9 +75,9 @@ class DuctileJoint(pymunk.Constraint):
         scheme: tuple[float, float] = IMPLICIT_EULER,
         on_break: Callable[[DuctileJoint], None] | None = None,
     ) -> None:
+        check_bodies(a, b)
+        check_law(law)
         moving = [body.body_type == pymunk.Body.DYNAMIC for body in (a, b)]
-        if not any(moving):
-            raise ValueError("a joint needs a dynamic body")
         if direction is None:
             direction = (b.position - a.position).angle
         if turn is None:
@@ -92,13 +93,7 @@ class DuctileJoint(pymunk.Constraint):
         rest = (direction - a.angle, direction - b.angle)
         axes = [f(angle) for angle in rest for f in (math.cos, math.sin)]
         self.geometry = np.array([*_anchor(a, self.at), *_anchor(b, self.at), *rest, turn, *axes, length / 24.0])
-        for what, values in (
-            ("position or direction", self.geometry),
-            ("stiffness", law.elastic_tangent()),
-            ("damping", damping),
-        ):
-            if not all(map(math.isfinite, values)):
-                raise ValueError(f"the joint has a {what} that is not finite")
+        check_numbers(damping, scheme, self.geometry)
         self._structure: Structure | None = None
         self._index = 0
         self._attach(a, b)
@@ -166,9 +161,7 @@ class DuctileJoint(pymunk.Constraint):
         Raises
         ------
         InputError
-            When a number is out of range, or both M_max and the elastic rotation are given.
-        ValueError
-            When neither body is dynamic.
+            When a number is out of range, both M_max and the elastic rotation are given, or neither body is dynamic.
         """
         moment, mass = (_against(a, b, what) for what in ("moment", "mass"))
         turn, turn_damping = stiffness_and_damping(frequency, damping_ratio, moment)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
+from capacity import InputError
 from sim import chipmunk
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
@@ -43,7 +44,9 @@ class Structure(Readings):
     Raises
     ------
     ValueError
-        When there is no joint, or the joints do not have the same time integration.
+        When there is no joint.
+    InputError
+        When the joints do not have the same time integration.
     """
 
     #: The memory that the kernels work on.
@@ -64,7 +67,10 @@ class Structure(Readings):
         if not joints:
             raise ValueError("a structure needs at least one joint")
         if len({joint.scheme for joint in joints}) > 1:
-            raise ValueError("the joints of a structure must have the same time integration scheme")
+            places = {joint.scheme: joint.at for joint in joints}
+            (one, (x, y)), (other, (u, v)), *_ = places.items()
+            fault = f"they share bodies, and one has the time integration {one}, the other {other}"
+            raise InputError(f"joints at {x:g}, {y:g} and {u:g}, {v:g}", fault, "give both the same scheme=")
         self._build(tuple(joints), tolerance)
         self._take_over(after)
 
@@ -228,7 +234,7 @@ class Structure(Readings):
                 f"the step was refused: the impulse of joint {fault} (made at {x:g}, {y:g}) is not finite; look for a "
                 "body that was moved or pushed without bound, or take a shorter step or a lower stiffness"
             )
-            _raise_after_step(_space_of(joint), error)
+            raise_after_step(_space_of(joint), error)
             return
         if self._control[at.MISSED] > 0:
             self.tables.make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
@@ -251,7 +257,8 @@ def _space_of(joint: DuctileJoint) -> pymunk.Space:
     return body.space
 
 
-def _raise_after_step(space: pymunk.Space, error: Exception) -> None:
+def raise_after_step(space: pymunk.Space, error: Exception) -> None:
+    """Have ``space`` raise ``error`` at the end of the step that it is in."""
     pending = [error]
 
     def fail(space: pymunk.Space, key: object) -> None:  # noqa: ARG001

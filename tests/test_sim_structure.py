@@ -192,15 +192,13 @@ def test_bad_joints_are_refused() -> None:
     with pytest.raises(ValueError, match="needs a dynamic body"):
         DuctileJoint(space.static_body, pymunk.Body(body_type=pymunk.Body.KINEMATIC), (0, 0), law)
     body = piece(space, 1.0, 1.0, 0.0, 0.0)
-    with pytest.raises(ValueError, match="stiffness that is not finite"):
-        DuctileJoint(space.static_body, body, (0, 0), ElasticPlastic((math.nan, 1, 1), (1, 1, 1)))
-    with pytest.raises(ValueError, match="position or direction that is not finite"):
+    with pytest.raises(ValueError, match="place is not finite"):
         DuctileJoint(space.static_body, body, (0, math.inf), law)
     mixed = [
         DuctileJoint(space.static_body, body, (0, 0), law),
         DuctileJoint(space.static_body, body, (1, 0), law, scheme=AVERAGE_ACCELERATION),
     ]
-    with pytest.raises(ValueError, match="same time integration"):
+    with pytest.raises(ValueError, match="give both the same scheme="):
         Structure(mixed)
 
 

@@ -67,6 +67,8 @@ def pre_step(digest: str) -> Callable[..., None]:
     def pre_step(constraint, h):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
+        if c == 0:
+            return  # it has no structure: Python could not make one, and will say so
         t = views.control(c)
         if t[at.LEADER] == 0:
             t[at.LEADER] = constraint
@@ -92,7 +94,7 @@ def apply_impulse(digest: str) -> Callable[..., None]:
     def apply_impulse(constraint, h):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
-        if views.control(c)[at.LEADER] == constraint:
+        if c != 0 and views.control(c)[at.LEADER] == constraint:
             solve(c)
 
     return apply_impulse
@@ -105,6 +107,8 @@ def get_impulse(digest: str) -> Callable[..., float]:
     def get_impulse(constraint):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         own = integers(constraint, CONTROL + 2)
+        if own[CONTROL] == 0:
+            return 0.0
         t = views.control(own[CONTROL])
         p = views.per_joint(t, at.IMPULSE)[own[CONTROL + 1]]
         return math.hypot(p[0], p[1])
@@ -119,9 +123,8 @@ def after_step(digest: str) -> Callable[..., None]:
     def after_step(constraint, space):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
-        t = views.control(c)
-        if t[at.LEADER] == constraint:
-            t[at.LEADER] = 0
+        if c != 0 and views.control(c)[at.LEADER] == constraint:
+            views.control(c)[at.LEADER] = 0
             finish(c)
 
     return after_step

@@ -13,6 +13,7 @@ import numpy as np
 
 from capacity import Capacity
 from sim.compiling import law_function
+from sim.laws.checks import check_length, check_three
 from sim.memory import floats
 
 
@@ -85,6 +86,11 @@ class ElasticPlastic(Capped):
         Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness.
     capacity : (float, float, float)
         N_max [N], Q_max [N], M_max [N m].
+
+    Raises
+    ------
+    InputError
+        When either is not three numbers from 0 on.
     """
 
     stiffness: tuple[float, float, float]
@@ -92,8 +98,13 @@ class ElasticPlastic(Capped):
 
     name = "elastic-plastic"
 
+    def __post_init__(self) -> None:
+        check_three("stiffness", self.stiffness, "N/m, N/m, N m/rad")
+        check_three("capacity", self.capacity, "N, N, N m")
+
     @classmethod
     def of_section(cls, section: Capacity, length: float) -> ElasticPlastic:
         """A joint that stands for ``length`` [m] of a member and bears what its section bears."""
+        check_length(length)
         stiffness = (section.EA / length, section.GA_s / length, section.EI / length)
         return cls(stiffness, (section.N_max, section.Q_max, section.M_max))

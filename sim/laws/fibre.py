@@ -17,6 +17,7 @@ import numpy as np
 
 from capacity import InputError, Material, Section, capacity
 from sim.compiling import law_function
+from sim.laws.checks import check_length
 from sim.memory import floats
 
 # Yield stress of a layer that does not yield [Pa].
@@ -140,10 +141,12 @@ class FibreSection:
         Raises
         ------
         InputError
-            When a stress–strain curve grows steeper somewhere, which says nothing about unloading.
+            When the length is not above 0, or a stress–strain curve grows steeper somewhere, which says nothing about
+            unloading.
         ValueError
             For fewer than 4 fibres.
         """
+        check_length(length)
         rows = [
             (cut.y, cut.area, *(np.full(len(cut.y), value) for value in layer))
             for own, cut in section.fibres_by_material(fibres, material)

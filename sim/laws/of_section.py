@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from capacity import FacetSurface, Interaction, Material, Section, capacity
+from sim.laws.checks import check_length
 from sim.laws.elastic_plastic import ElasticPlastic
 from sim.laws.fibre import FibreSection
 from sim.laws.interaction import InteractionPlastic
@@ -46,10 +47,11 @@ def section_law(
     ValueError
         For an unknown name, or fewer than 4 fibres.
     InputError
-        For an unknown criterion, or a table of stresses that fibres cannot follow back.
+        For an unknown criterion, a length that is not above 0, or a table of stresses that fibres cannot follow back.
     """
     if name not in LAWS:
         raise ValueError(f'there is no joint law "{name}"; the laws are {", ".join(LAWS)}')
+    check_length(length)
     c = capacity(section, material, criterion)
     shear = c.GA_s / length if shear_stiffness is None else shear_stiffness
     stiffness = (c.EA / length, shear, c.EI / length)

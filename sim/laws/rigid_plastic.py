@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 from capacity import Capacity
+from sim.laws.checks import check_length, check_three
 from sim.laws.elastic_plastic import Capped
 
 #: Extension, slip and rotation at which a joint yields [m, m, rad].
@@ -33,6 +34,8 @@ class RigidPlastic(Capped):
 
     Raises
     ------
+    InputError
+        When the capacity is not three numbers from 0 on.
     ValueError
         When none is finite and positive, for then nothing says what is stiff.
     """
@@ -43,7 +46,8 @@ class RigidPlastic(Capped):
     name = "rigid-plastic"
 
     def __post_init__(self) -> None:
-        if not any(0.0 < cap < math.inf for cap in self.capacity) or min(self.capacity) < 0.0:
+        check_three("capacity", self.capacity, "N, N, N m")
+        if not any(0.0 < cap < math.inf for cap in self.capacity):
             raise ValueError(f"capacities {self.capacity}: a rigid–plastic joint needs one that is finite and positive")
         if any(map(math.isnan, self.stiffness)):
             most = max(cap for cap in self.capacity if cap < math.inf)
@@ -53,6 +57,7 @@ class RigidPlastic(Capped):
     @classmethod
     def of_section(cls, section: Capacity, length: float) -> RigidPlastic:
         """A joint that stands for ``length`` [m] of a member; at least `STIFFER` times as stiff as the member is."""
+        check_length(length)
         law = cls((section.N_max, section.Q_max, section.M_max))
         elastic = (section.EA / length, section.GA_s / length, section.EI / length)
         N, Q, M = (max(k, STIFFER * e) for k, e in zip(law.stiffness, elastic, strict=True))

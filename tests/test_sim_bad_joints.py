@@ -1,0 +1,101 @@
+"""Joints that cannot be: refused where they are made, or out of `space.step`, in one line that says what to write."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pymunk
+import pytest
+
+from capacity import InputError, parse_material, parse_section
+from sim import AVERAGE_ACCELERATION, DuctileJoint, ElasticPlastic, Limits, RigidPlastic, section_law
+
+STIFFNESS, CAPACITY = (1e6, 1e6, 1e4), (1e3, 1e3, 1e2)
+LAW = ElasticPlastic(STIFFNESS, CAPACITY)
+
+
+def bodies(count: int) -> list[pymunk.Body]:
+    """In a row along x, a metre apart."""
+    row = [pymunk.Body(1.0, 1.0) for _ in range(count)]
+    for i, body in enumerate(row):
+        body.position = (float(i), 0.0)
+    return row
+
+
+def joint(law: Any = LAW, **options: Any) -> DuctileJoint:
+    return DuctileJoint(*bodies(2), (0.5, 0.0), law, **options)
+
+
+def section(length: float) -> object:
+    return section_law("fibre", parse_section("IPE 200"), parse_material("S235"), length)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: ElasticPlastic((1e6, 1e6), CAPACITY), r"stiffness: \(1000000.0, 1000000.0\) is not three numbers"),  # type: ignore[arg-type]
+        (lambda: ElasticPlastic(1e6, CAPACITY), "stiffness: 1000000.0 is not three numbers; write three"),  # type: ignore[arg-type]
+        (lambda: ElasticPlastic((-1.0, 1.0, 1.0), CAPACITY), r"stiffness: .*negative.*\[N/m, N/m, N m/rad\]"),
+        (lambda: ElasticPlastic(STIFFNESS, (math.nan, 1.0, 1.0)), "capacity: .*no number"),
+        (lambda: RigidPlastic((1e3, -1.0, 1e3)), r"capacity: .*negative.*\[N, N, N m\]"),
+        (lambda: section(0.0), "length: 0 m is not greater than zero"),
+        (lambda: section(-0.2), "length: -0.2 m is not"),
+        (lambda: Limits(rotation=-1.0), "limits.rotation: -1.0 is negative"),
+        (lambda: Limits(slip=math.nan), "limits.slip: nan is negative or no number"),
+        (lambda: joint("fibre"), "law: 'fibre' is no law.*section_law"),
+        (lambda: joint(ElasticPlastic((math.inf, 1.0, 1.0), CAPACITY)), "law: its stiffness is not finite"),
+        (lambda: joint(damping=(-1.0, 0.0, 0.0)), r"damping: \(-1.0, 0.0, 0.0\) will not do"),
+        (lambda: joint(scheme="average"), "scheme: 'average' is no time integration; write IMPLICIT_EULER"),
+        (lambda: joint(direction=math.nan), "at, direction: the joint's place is not finite"),
+        (lambda: DuctileJoint(*bodies(1) * 2, (0.0, 0.0), LAW), "a, b: a joint needs two bodies"),
+    ],
+)
+def test_a_joint_that_cannot_be_is_refused_where_it_is_made(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(InputError, match=f"^{message}"):
+        make()
+
+
+class Broken(ElasticPlastic):
+    """A law under construction."""
+
+    def parameters(self) -> Any:
+        raise ZeroDivisionError("a law's own fault")
+
+
+@pytest.mark.parametrize(
+    ("second", "error", "message"),
+    [
+        (LAW, InputError, r"joints at 0\.5, 0 and 1\.5, 0: .*\(0\.25, 0\.0\); give both the same scheme="),
+        (Broken(STIFFNESS, CAPACITY), ZeroDivisionError, "a law's own fault"),
+    ],
+)
+def test_joints_that_make_no_structure_are_told_out_of_every_step_until_they_are_gone(
+    second: ElasticPlastic, error: type[Exception], message: str
+) -> None:
+    """And what has no structure does nothing meanwhile; Chipmunk asks joints from C, where nothing can be raised."""
+    space = pymunk.Space()
+    a, b, c = bodies(3)
+    first = DuctileJoint(a, b, (0.5, 0.0), LAW)
+    scheme = AVERAGE_ACCELERATION if second is LAW else first.scheme
+    odd = DuctileJoint(b, c, (1.5, 0.0), second, scheme=scheme)
+    space.add(a, b, c, first, odd)
+    for _ in range(2):
+        with pytest.raises(error, match=message):
+            space.step(1 / 60)
+    space.remove(odd)
+    b.velocity = (0.0, 1.0)
+    space.step(1 / 60)
+    assert first.structure is not None
+    assert a.velocity.y > 0.3
+    assert a.velocity.y + b.velocity.y == pytest.approx(1.0)
+    assert c.velocity.y == 0.0
+
+
+def test_a_body_that_is_not_in_the_space_is_named() -> None:
+    space = pymunk.Space()
+    a, b = bodies(2)
+    space.add(a, DuctileJoint(a, b, (0.5, 0.0), LAW))
+    with pytest.raises(InputError, match=r"joint at 0\.5, 0: a body of it is not in the space; space\.add\(body\)"):
+        space.step(1 / 60)
+    space.add(b)
+    space.step(1 / 60)

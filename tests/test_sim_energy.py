@@ -1,5 +1,6 @@
 """The ledger: every entry against what it is to be, and the sum of all to rounding."""
 
+import itertools
 import math
 
 import numpy as np
@@ -229,3 +230,36 @@ def test_a_structure_built_of_moving_bodies_brings_their_energy() -> None:
     assert again.energy.external == pytest.approx(0.5 * 4 * 3.12 * 9.0, rel=1e-12)
     case.space.step(1 / 60)
     assert abs(again.energy.gap) <= 1e-12 * again.energy.external
+
+
+def test_a_support_that_sinks_works_while_a_blow_is_taken_in_parts() -> None:
+    """As much as its force times its way, in every step; a crate lies on the beam that it bends."""
+    space = pymunk.Space()
+    space.gravity, space.collision_slop = (0.0, -9.81), 1e-3
+    sinking = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    sinking.position = (2.0, 0.0)
+    pieces = [pymunk.Body(4.0, 4.0 * 0.5**2 / 12.0) for _ in range(4)]
+    held = [space.static_body, *pieces, sinking]
+    law = ElasticPlastic((1e7, 1e7, 1e5), (1e5, 1e5, 3e3))
+    for i, piece in enumerate(pieces):
+        piece.position = (0.25 + 0.5 * i, 0.0)
+        space.add(piece, pymunk.Poly.create_box(piece, (0.5, 0.1)))
+    joints = [DuctileJoint(a, b, (0.5 * i, 0.0), law) for i, (a, b) in enumerate(itertools.pairwise(held))]
+    for shape in space.shapes:
+        shape.filter = pymunk.ShapeFilter(group=1)
+    crate = pymunk.Body(20.0, 1.0)
+    crate.position = (1.0, 0.6)
+    space.add(sinking, crate, pymunk.Poly.create_box(crate, (0.4, 0.4)), *joints)
+    worked, blows = 0.0, 0
+    for _ in range(120):
+        sinking.velocity = (0.0, -0.05)
+        space.step(1 / 60)
+        assert joints[-1].structure is not None
+        worked += joints[-1].force[1] * -0.05 / 60.0
+        blows += joints[-1].structure.energy.contact > 0.0
+    found = energy(space)
+    assert blows > 50
+    assert found.plastic > 50.0
+    assert found.numerical >= 0.0
+    # What else works on the structure is its own weight and the crate's: no more than both along the way sunk.
+    assert worked <= found.external <= worked + 36.0 * 9.81 * 0.1 + 20.0 * 9.81 * 0.4

@@ -15,6 +15,7 @@ A blow is noticed late, and all go back to when they touched (`late.py`); the pa
 import numpy as np
 
 from sim.chipmunk import (
+    ANGLE,
     BODY_FULL_WORDS,
     BODY_SPACE,
     BODY_WORDS,
@@ -26,6 +27,7 @@ from sim.chipmunk import (
     SPACE_WORDS,
     SPIN,
     VX,
+    X,
 )
 from sim.kernels import layout as at
 from sim.kernels import views
@@ -300,6 +302,9 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
             position[i, 0] += (h - whole) * b[VX]
             position[i, 1] += (h - whole) * b[VX + 1]
             position[i, 2] += (h - whole) * b[SPIN]
+        for i in range(t[at.MOVING], t[at.BODIES]):
+            b = floats(body_at[i], BODY_WORDS)
+            position[i, 0], position[i, 1], position[i, 2] = b[X], b[X + 1], b[ANGLE]
     places, touches = views.places(t), views.touches(t)
     for k in range(t[at.CONTACTS]):
         contact = floats(places[k, WHERE], CONTACT_WORDS)

@@ -27,6 +27,8 @@ from sim.memory import floats, integers, kernel
 
 # A movement without velocity below this [m, rad], over 1 + |x|, is rounding.
 _UNMOVED = 1e-12
+# A velocity up to this is none [m/s, rad/s].
+_STILL = 1e-40
 
 
 @kernel
@@ -64,8 +66,7 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
     """
     body_at, shift, moving = views.body_at(t), views.shift(t), t[at.MOVING]
     start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
-    position, written = views.per_body(t, at.LAST_POSITION), views.per_body(t, at.WRITTEN)
-    external, velocity, weight = views.per_body(t, at.EXTERNAL), views.per_body(t, at.VELOCITY), views.weight(t)
+    position, velocity, weight = views.per_body(t, at.LAST_POSITION), views.per_body(t, at.VELOCITY), views.weight(t)
     fastest, touching, pushed, shifted = 0.0, False, t[at.SHIFTED] == 1, False
     for i in range(t[at.BODIES]):
         b = floats(body_at[i], BODY_WORDS)
@@ -78,7 +79,7 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
             touching = touching or integers(body_at[i], BODY_FULL_WORDS)[ARBITERS] != 0
         for axis in range(3):
             v = b[SPIN] if axis == 2 else b[VX + axis]
-            start[i, axis], velocity[i, axis], written[i, axis], external[i, axis] = v, v, v, 0.0
+            start[i, axis], velocity[i, axis] = v, v
             by_contacts = 0.0
             if pushed:
                 # Until now it held the pseudo-velocity with which the last step ended.
@@ -115,12 +116,18 @@ def depart(t):  # type: ignore[no-untyped-def]
 
 @kernel
 def take_in(t):  # type: ignore[no-untyped-def]
-    """Book what changed the bodies' velocities since they were written, and let the solver know; whether any did."""
-    body_at, weight = views.body_at(t), views.weight(t)
+    """Book what changed the bodies' velocities since they were written, and let the solver know; whether any did.
+
+    Before the first solve of a step, nothing has been written or booked in it.
+    """
+    body_at, weight, first = views.body_at(t), views.weight(t), t[at.FRESH] == 1
     velocity, written = views.per_body(t, at.VELOCITY), views.per_body(t, at.WRITTEN)
-    external = views.per_body(t, at.EXTERNAL)
+    start, external = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.EXTERNAL)
     differs = False
     for i in range(t[at.MOVING]):
+        if first:
+            for axis in range(3):
+                written[i, axis], external[i, axis] = start[i, axis], 0.0
         b = floats(body_at[i], BODY_WORDS)
         x, y, w = b[VX] - written[i, 0], b[VX + 1] - written[i, 1], b[SPIN] - written[i, 2]
         if x != 0.0 or y != 0.0 or w != 0.0:
@@ -146,12 +153,23 @@ def write(t):  # type: ignore[no-untyped-def]
     """Give the bodies their velocities."""
     body_at, velocity, written = views.body_at(t), views.per_body(t, at.VELOCITY), views.per_body(t, at.WRITTEN)
     for i in range(t[at.MOVING]):
-        b, vx, vy, spin = floats(body_at[i], BODY_WORDS), velocity[i, 0], velocity[i, 1], velocity[i, 2]
+        b = floats(body_at[i], BODY_WORDS)
+        vx, vy, spin = settled(velocity[i, 0]), settled(velocity[i, 1]), settled(velocity[i, 2])
         written[i, 0], written[i, 1], written[i, 2] = vx, vy, spin
         b[VX], b[VX + 1], b[SPIN] = vx, vy, spin
     if t[at.TURNING] == 1 and t[at.FREE] == 1:
         give_back(t, velocity, written)
         store_velocities(t, written)
+
+
+@kernel
+def settled(velocity):  # type: ignore[no-untyped-def]
+    """A velocity, or 0 for one that has died away.
+
+    In a direction where nothing rounds, as across a beam at y = 0, a motion dies away for ever, and processors take
+    many times as long for numbers, or products of some, that are nearly too small to be written down.
+    """
+    return velocity if abs(velocity) > _STILL else 0.0
 
 
 @kernel

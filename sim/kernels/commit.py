@@ -38,6 +38,7 @@ from sim.kernels.layout import (
     RESULT_ELASTIC,
     RESULT_FORCE,
     RESULT_PLASTIC,
+    RESULT_Q,
     RESULT_USED,
     RESULT_VISCOUS,
     RESULT_WORDS,
@@ -119,7 +120,7 @@ def commit(t):  # type: ignore[no-untyped-def]
     ledger, moving = views.ledger(t), t[at.MOVING]
     h, reach, whole = settings[STEP], reach_of(t), flow_share(t)
     out, old = floats(t[at.SCRATCH], COMMIT_WORDS), t[at.SCRATCH] + 8 * SCRATCH_STATE
-    broke, flowing = 0, 0.0
+    broke, flows, breakable = 0, False, t[at.BREAKABLE] == 1
     external, elastic, contact, viscous, numerical = 0.0, 0.0, 0.0, 0.0, 0.0
     plastic, to_come = ledger[LEDGER_TO_COME], 0.0
     for k in range(t[at.JOINTS]):
@@ -127,8 +128,7 @@ def commit(t):  # type: ignore[no-untyped-def]
         if active[k] == 0:
             # Let go by hand: what it stored goes with it.
             external -= 0.5 * (r[RESULT_BEFORE] + r[RESULT_ELASTIC])
-            r[0:RESULT_PLASTIC] = 0.0
-            r[RESULT_BEFORE], r[RESULT_ELASTIC] = 0.0, 0.0
+            r[RESULT_Q:RESULT_PLASTIC] = 0.0
             continue
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         x, y, z = rates(gradient, k, velocity, ia, velocity, ib)
@@ -144,8 +144,11 @@ def commit(t):  # type: ignore[no-untyped-def]
             go_all_the_way(laws[k, 3], old, laws[k, 4], whole)
         at_end, work = out[0], whole * out[1]
         flow_u, flow_v, flow_turn = whole * out[FLOW], whole * out[FLOW + 1], whole * out[FLOW + 2]
-        share, room = used(limits[k], r, whole, out) if t[at.BREAKABLE] == 1 else (0.0, 1.0)
-        lost, second_half = scale[k] * work, 0.5 * scale[k] * work
+        held, room = 1.0, 1.0
+        if breakable:
+            share, room = used(limits[k], r, whole, out)
+            held, r[RESULT_USED] = scale[k], min(share, 1.0)
+        lost, second_half = held * work, 0.5 * held * work
         if settings[BETA] != 0.0:
             xl, yl, zl = rates(gradient, k, last, ia, last, ib)
             at_end += half_a_step_on(t, k, xl, yl, zl, x, y, z, whole - 1.0, out)
@@ -167,28 +170,29 @@ def commit(t):  # type: ignore[no-untyped-def]
             given += by_contacts + by_hand
             r[RESULT_ELASTIC] += by_contacts + by_hand
         at_start = r[RESULT_ELASTIC] if settings[BETA] == 0.0 else at_end
-        r[RESULT_USED] = min(share, 1.0)
-        r[RESULT_PLASTIC + (0 if flow_u > 0.0 else 1)] += abs(flow_u)
-        r[RESULT_PLASTIC + 2] += abs(flow_v)
-        r[RESULT_PLASTIC + 3] += abs(flow_turn)
-        if scale[k] < 1.0 or room < 1.0:
+        if flow_u != 0.0 or flow_v != 0.0 or flow_turn != 0.0:
+            r[RESULT_PLASTIC + (0 if flow_u > 0.0 else 1)] += abs(flow_u)
+            r[RESULT_PLASTIC + 2] += abs(flow_v)
+            r[RESULT_PLASTIC + 3] += abs(flow_turn)
+            flows = True
+        if held < 1.0 or room < 1.0:
             # What was stored elastically, and what the joint still took of the step's share, is lost with it.
-            lost += r[RESULT_ELASTIC] + scale[k] * (at_end - r[RESULT_ELASTIC])
+            lost += r[RESULT_ELASTIC] + held * (at_end - r[RESULT_ELASTIC])
             at_start, at_end, second_half = 0.0, 0.0, 0.0
             r[RESULT_USED] = 1.0
             active[k] = 0
             broke += 1
         stored = 0.5 * (at_start + at_end)
         r[RESULT_BEFORE], r[RESULT_ELASTIC] = at_start, at_end
-        r[RESULT_DISSIPATED] += lost
-        r[RESULT_VISCOUS] += damped
-        flowing += abs(flow_u) + abs(flow_v) + abs(flow_turn)
+        if lost != 0.0 or damped != 0.0:
+            r[RESULT_DISSIPATED] += lost
+            r[RESULT_VISCOUS] += damped
         elastic += stored
         plastic += lost - second_half
         to_come += second_half
         viscous += damped
         numerical += given - stored
-    t[at.FLOWING] = 1 if flowing > 0.0 else 0
+    t[at.FLOWING] = 1 if flows else 0
     ledger[LEDGER_EXTERNAL] += external
     ledger[LEDGER_ELASTIC] = elastic
     ledger[LEDGER_PLASTIC] += plastic

@@ -33,11 +33,12 @@ from sim.chipmunk import BODY_WORDS, CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMP
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.contacts import other_velocity, own_velocity
-from sim.kernels.inertia import mass_of, moment_of
+from sim.kernels.inertia import moment_of
 from sim.kernels.kinematics import impulses, rates
 from sim.kernels.layout import (
     CACHED,
     INERTIA_I,
+    INERTIA_M,
     LEDGER_CONTACT,
     LEDGER_EXTERNAL,
     LEDGER_KINETIC,
@@ -86,9 +87,9 @@ def close(c, t):  # type: ignore[no-untyped-def]
     touching, driven, turns = t[at.CONTACTS] > 0 or t[at.HEAD] != 0, t[at.SPREAD] == 1, t[at.TURNING] == 1
     before, after, outside, turning, contact_work = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(t[at.MOVING]):
-        b = floats(body_at[i], BODY_WORDS)
+        moment = moment_of(floats(body_at[i], BODY_WORDS)) if turns else weight[i, INERTIA_I]
         for axis in range(3):
-            mass = moment_of(b) if axis == 2 else mass_of(b)
+            mass = moment if axis == 2 else weight[i, INERTIA_M]
             v0, v1 = start[i, axis], end[i, axis]
             mean = 0.5 * (v0 + v1)
             before += mass * v0 * v0

@@ -40,11 +40,12 @@ def moment_of(b):  # type: ignore[no-untyped-def]
 
 @kernel
 def weigh(weight, i, b):  # type: ignore[no-untyped-def]
-    """Weight of body i by its struct."""
+    """Weight of body i by its struct; mostly it is what it was."""
     mass, moment = mass_of(b), moment_of(b)
-    weight[i, INERTIA_M], weight[i, INERTIA_I] = mass, moment
-    weight[i, INVERSE_M] = 1.0 / mass if mass < _IMMOVABLE else 0.0
-    weight[i, INVERSE_I] = 1.0 / moment if moment < _IMMOVABLE else 0.0
+    if weight[i, INERTIA_M] != mass or weight[i, INERTIA_I] != moment:
+        weight[i, INERTIA_M], weight[i, INERTIA_I] = mass, moment
+        weight[i, INVERSE_M] = 1.0 / mass if mass < _IMMOVABLE else 0.0
+        weight[i, INVERSE_I] = 1.0 / moment if moment < _IMMOVABLE else 0.0
 
 
 @kernel

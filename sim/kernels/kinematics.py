@@ -54,7 +54,8 @@ def take_up(t, ratio):  # type: ignore[no-untyped-def]
         held = held or (active[k] != 0 and (joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving))
         for i in range(3):
             impulse[k, i] *= ratio * active[k]
-        scale[k] = 1.0
+        if t[at.BREAKABLE] == 1:
+            scale[k] = 1.0
     t[at.FREE] = 0 if held else 1
 
 

@@ -118,12 +118,11 @@ SCRATCH_Q, SCRATCH_STATE = 9, 12
 INERTIA_M, INERTIA_I, INVERSE_M, INVERSE_I = 0, 1, 2, 3
 WEIGHT_WORDS = 4
 
-# Result of a step: q*, force, plastic deformation summed without sign (elongation, shortening, slip, rotation),
-# elastic energy, plastic work so far, viscous work so far, share of the plastic capacity used, elastic energy
-# before the step. A word is spare, so that a row is two cache lines.
-RESULT_Q, RESULT_FORCE, RESULT_PLASTIC = 0, 3, 6
-RESULT_ELASTIC, RESULT_DISSIPATED, RESULT_VISCOUS, RESULT_USED = 10, 11, 12, 13
-RESULT_BEFORE = 14
+# Result of a step: q*, force, elastic energy and that before the step; then, in a cache line of its own, what changes
+# where joints flow, are damped or may break: plastic deformation summed without sign (elongation, shortening, slip,
+# rotation), plastic work so far, viscous work so far, share of the plastic capacity used, and a spare word.
+RESULT_Q, RESULT_FORCE, RESULT_ELASTIC, RESULT_BEFORE = 0, 3, 6, 7
+RESULT_PLASTIC, RESULT_DISSIPATED, RESULT_VISCOUS, RESULT_USED = 8, 12, 13, 14
 RESULT_WORDS = 16
 
 # A contact in `places`: address of the cpContact, its hash; for each side the control table of the structure that the

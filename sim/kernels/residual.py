@@ -32,14 +32,14 @@ def respond(t):  # type: ignore[no-untyped-def]
     joint_bodies, laws, scale = views.joint_bodies(t), views.laws(t), views.scale(t)
     gradient, deformation = views.gradient(t), views.per_joint(t, at.DEFORMATION)
     residual, velocity, response = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.VELOCITY), views.response(t)
-    reach, error, size = reach_of(t), 0.0, 0.0
+    reach, error, size, breakable = reach_of(t), 0.0, 0.0, t[at.BREAKABLE] == 1
     for k in range(t[at.JOINTS]):
         x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         # The joint's row of residuals holds q* until they are known.
         residual[k, 0], residual[k, 1] = deformation[k, 0] + reach * x, deformation[k, 1] + reach * y
         residual[k, 2] = deformation[k, 2] + reach * z
         call_law(laws[k, 0], laws[k, 2], laws[k, 3], t[at.RESIDUAL] + 24 * k, t[at.RESPONSE] + 8 * RESPONSE_WORDS * k)
-        if scale[k] != 1.0:
+        if breakable and scale[k] != 1.0:
             for i in range(RESPONSE_WORDS):
                 response[k, i] *= scale[k]
         of_residual, of_impulse = remain(t, k, reach, x, y, z)

@@ -92,11 +92,11 @@ def _hinges(result: MotionCalibration) -> Sheet:
         model = "none" if pair.model is None else f"{1e3 * pair.model:.4g}"
         rows.append((pair.where, f"{1e3 * pair.reference:.4g}", known, model, late))
     note = (
-        "Milliseconds after which plastic hinges form, in the reference's order, with its own error; a joint counts as "
+        "Times at which plastic hinges form, in the reference's order, with its own error; a joint counts as "
         "one at 98.5 % of its plastic moment. Behind a blow a hinge travels along its member, and is named where it "
         "begins: a joint stands for a length, and comes to it later or not at all."
     )
-    return Sheet("Hinges", note, ("<where", "reference", "±", "model", "difference"), tuple(rows))
+    return Sheet("Hinges", note, ("<where", "reference [ms]", "± [ms]", "model [ms]", "difference [ms]"), tuple(rows))
 
 
 def _trials(result: MotionCalibration) -> Sheet:

@@ -94,7 +94,7 @@ class MotionCalibration:
     def uncertainty(self) -> float:
         """Estimated error of the reference's peak or of what remains, the larger, over the peak [-]."""
         reference = self.reference
-        return max(reference.peak_error, reference.residual_error) / abs(reference.peak)
+        return max(reference.peak_error, reference.rest_error) / abs(reference.peak)
 
     @property
     def target_met(self) -> bool:

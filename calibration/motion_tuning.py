@@ -5,59 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import msgspec
-import numpy as np
-
 from calibration.comparable_motion import follow_model
 from calibration.errors import Findings
 from calibration.frequencies import model_frequency, reference_frequency
 from calibration.hinges import in_order, motion_hinges
 from calibration.limits import shear_remarks, what_limits
 from calibration.member_plans import MemberPlan, motion_plans
+from calibration.motion_errors import MotionErrors, compare_motion, watching
 from calibration.motion_search import cheapest_step
 from calibration.planner import MOTION_RATES, motion_cuts, relative_cost
 from calibration.saving import give_less
 from calibration.trials import Failure
 from capacity import Capacity, InputError
-from fem_reference import HISTORY_SHARE, MotionResult, motion, remarks
+from fem_reference import MotionResult, motion, remarks
 from scene import Scene
-from scene.actions import unit_vector
-from scene.watched import extreme
 from sim import Course, Model, SolverError
 
 #: The reference's peak and what remains must be known this many times better than the target.
 REFERENCE_MARGIN = 3.0
-
-
-@dataclass(frozen=True)
-class MotionErrors:
-    """Errors of a model's motion, as shares of the reference's peak where nothing else is said [-].
-
-    Attributes
-    ----------
-    peak : float
-        Largest displacement by size, signed.
-    residual : float
-        Displacement at rest, signed.
-    history : float
-        Largest difference at any time: a little out of step, it is large where the motion is fast.
-    peak_time : float
-        When the largest displacement is reached, signed, over the duration; looked for no further from when the
-        reference has it than a quarter of the first natural period, where several swings are as large.
-    plastic_work : float or None
-        Signed, over the reference's; None where that dissipates nothing.
-    """
-
-    peak: float
-    residual: float
-    history: float
-    peak_time: float
-    plastic_work: float | None
-
-    @property
-    def worst(self) -> float:
-        """What a target holds for: the error of the peak, of what remains, or a tenth of that at any time."""
-        return max(abs(self.peak), abs(self.residual), HISTORY_SHARE * self.history)
 
 
 @dataclass(frozen=True)
@@ -200,8 +165,7 @@ class Bench:
     """
 
     def __init__(self, scene: Scene, reference: MotionResult) -> None:
-        assert scene.motion is not None
-        self._scene = msgspec.structs.replace(scene, motion=msgspec.structs.replace(scene.motion, watch=reference.node))
+        self._scene = watching(scene, reference.node)
         self._reference = reference
         self.frequency = reference_frequency(scene)
         self.trials: list[MotionTrial] = []
@@ -215,26 +179,6 @@ class Bench:
             self.failures.append(Failure(model, str(error)))
             return None
         cost = relative_cost(model, self._scene.members, course.newton_steps)
-        errors = _compare(self._scene, self._reference, course, self.frequency)
+        errors = compare_motion(self._scene, self._reference, course, self.frequency)
         self.trials.append(MotionTrial(model, course, errors, cost))
         return self.trials[-1]
-
-
-def _compare(scene: Scene, reference: MotionResult, course: Course, frequency: float) -> MotionErrors:
-    assert scene.motion is not None
-    along = np.array(unit_vector(scene.motion.direction))
-    size, duration = abs(reference.peak), float(scene.motion.duration)
-    rest, wanted = (float(along @ at.residual[reference.node]) for at in (course, reference))
-    near = np.flatnonzero(
-        np.abs(course.time - reference.peak_time) <= (0.25 / frequency if frequency > 0.0 else np.inf)
-    )
-    swing = near[0] + extreme(np.maximum(np.sign(reference.peak) * course.displacement[near], 0.0))[1]
-    history = np.interp(course.time, reference.time, reference.displacement) - course.displacement
-    work = float(reference.plastic[-1])
-    return MotionErrors(
-        peak=abs(course.peak) / size - 1.0,
-        residual=(rest - wanted) / size,
-        history=float(np.abs(history).max()) / size,
-        peak_time=(swing * float(course.time[1]) - reference.peak_time) / duration,
-        plastic_work=course.dissipated / work - 1.0 if work > 1e-6 * float(np.abs(reference.external).max()) else None,
-    )

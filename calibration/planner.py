@@ -34,7 +34,7 @@ _FINE = ((10, 16), (17, 48))
 # In a motion: joints and fibres; steps a second; average acceleration, damped little.
 _MOTION_FIBRES = ((4, 8), (6, 12), (8, 12), (10, 16), (14, 16), (20, 24))
 MOTION_RATES = (60, 120, 240, 480, 1000, 2000, 4000, 8000)
-_MOTION_SCHEME = (AVERAGE_ACCELERATION[0], 0.02)
+MOTION_SCHEME = (AVERAGE_ACCELERATION[0], 0.02)
 
 # Prices of `benchmarks/model_prices.py` in microseconds, rounded: of a step, of a joint in it, of each Newton step
 # after the first for every joint, and for every Newton step what a law adds, that of fibres per fibre.
@@ -111,7 +111,7 @@ def motion_cuts(scene: Scene, plans: Mapping[str, MemberPlan]) -> list[Model]:
     for cut in cuts:
         elastic = MemberModel("lobatto", cut.joints, "elastic-plastic")
         own = {name: elastic for name, plan in plans.items() if plan.kind == "elastic"} | _fixed(plans)
-        models.append(replace(cut, scheme=_MOTION_SCHEME, members=own))
+        models.append(replace(cut, scheme=MOTION_SCHEME, members=own))
     return sorted(models, key=lambda model: relative_cost(model, scene.members))
 
 

@@ -30,7 +30,7 @@ _COARSEST = (20, 48, 500)
 #: Elements or steps are doubled when what they make of the estimate is more than this share of the tolerance, …
 _MATTERS = 1.0 / 3.0
 #: … as long as members × elements × steps stay below this: some ten seconds for the finest model.
-_LARGEST = 640_000
+_LARGEST = 320_000
 #: What a difference at any time counts for beside one of the peak: it is nearly all a matter of being a little early
 #: or late.
 HISTORY_SHARE = 0.1

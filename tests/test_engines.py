@@ -10,7 +10,7 @@ import numpy as np
 import pymunk
 import pytest
 from command_line import ductile
-from frames import propped, two_spans
+from frames import frame_text, propped, two_spans
 
 from calibration.engines.catalogue import ENGINES
 from calibration.engines.export import Export, export
@@ -215,3 +215,18 @@ def test_bad_options_are_refused(
     assert fault in error
     assert error.count("\n") == 1
     assert not (tmp_path / "o").exists()
+
+
+def test_a_motion_is_exported_with_what_its_joints_err_by(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A heavy body on a beam, loaded at once: hinges alone bend it as far as fibres do, within a tenth."""
+    nodes = {"A": (0.0, 0.0, "clamped"), "B": (1.5, 0.0, "free")}
+    motion = '[motion]\nduration = 0.1\nwatch = "B"\ndirection = [0, -1]'
+    load = 'node = "B"\nforce = [0.0, -13e3]\nkind = "step"'
+    text = frame_text(nodes, [("A", "B")], motion, [load], section="rectangle 50x100 mm")
+    (tmp_path / "scene.toml").write_text(text.replace('support = "free"', 'support = "free"\nmass = 500.0'))
+    arguments = ("--engine", "godot", "--dt", "1/480 s", "-o", str(tmp_path), "--json")
+    assert ductile("export", str(tmp_path / "scene.toml"), *arguments) == 0
+    (said,) = [note for note in json.loads(capsys.readouterr().out)["notes"] if note.startswith("Error to expect")]
+    (peak,) = re.findall(r"peak ([+-][\d.]+) %", said)
+    assert abs(float(peak)) < 10.0
+    assert "at rest" in said

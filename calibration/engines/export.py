@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 
+from calibration.comparable_motion import follow_model
 from calibration.comparable_push import push_model
 from calibration.engines.catalogue import ENGINES, Engine, NoTree
 from calibration.engines.handover import LAW, Handover, hand_over
@@ -12,10 +13,13 @@ from calibration.engines.pushing import CurveErrors, Unstable, curve_errors
 from calibration.engines.text import comment
 from calibration.engines.to_pymunk import module_text, push_module
 from calibration.errors import compare
+from calibration.frequencies import reference_frequency
+from calibration.motion_errors import compare_motion, watching
+from calibration.planner import MOTION_SCHEME
 from calibration.tuning import REFERENCE_TOLERANCE
-from fem_reference import PushAnswer, push_over
+from fem_reference import PushAnswer, motion, push_over
 from scene import Scene
-from sim import Model
+from sim import Model, SolverError
 
 #: Points of the rule in a member that are tried where the engine can be run, …
 TRIED = (2, 3, 5)
@@ -100,8 +104,8 @@ def export(scene: Scene, name: str, engine: str, model: Model, joints: int | Non
         f"{best.model.rule} rule with {best.model.joints} points a member. For {target.title}. "
         f"Step {best.model.dt:.6g} s, {best.model.iterations} iterations. ductile-joints {version('ductile-joints')}.",
         f"Cannot be expressed: {target.cannot.strip()}",
-        *_supports(scene, handover, engine),
-        *_expected(target, best, attempts, handover, reference, model_errors),
+        *_left_out(scene, handover, engine),
+        *_expected(scene, target, best, attempts, handover, reference, model_errors),
     )
     text = target.writers[best.writer](handover, comment(notes, target.comment))
     return Export(engine, text, handover, model_errors, best.errors, tuple(attempts), notes)
@@ -143,7 +147,29 @@ def _said(errors: CurveErrors) -> str:
     return f"path {100 * errors.path_max:.3g} % of the peak load, largest load {100 * errors.collapse_load:+.2f} %"
 
 
+def _expected_of_motion(scene: Scene, model: Model) -> str:
+    """What a scene without a push can say: how the same joints, solved as one, move beside the reference."""
+    if scene.motion is None:
+        return "Error to expect: not measured, for the scene has neither a push nor a motion."
+    reference = motion(scene, of="peak")
+    as_one = replace(model, iterations=2, scheme=MOTION_SCHEME)
+    head = (
+        f"Error to expect, against the reference ({reference.method}, peak within "
+        f"{100 * reference.peak_error / abs(reference.peak):.2g} %): the joints themselves, solved as one,"
+    )
+    try:
+        course = follow_model(watching(scene, reference.node), as_one)
+    except SolverError as error:
+        return f"{head} cannot be stepped: {error}."
+    errors = compare_motion(scene, reference, course, reference_frequency(scene))
+    return (
+        f"{head} peak {100 * errors.peak:+.3g} %, at rest {100 * errors.residual:+.3g} % of the peak. "
+        "Engines are run with pushes only."
+    )
+
+
 def _expected(
+    scene: Scene,
     target: Engine,
     best: Attempt,
     attempts: list[Attempt],
@@ -152,7 +178,7 @@ def _expected(
     model_errors: CurveErrors | None,
 ) -> list[str]:
     if reference is None or model_errors is None:
-        return ["Error to expect: not measured, for the scene has no push."]
+        return [_expected_of_motion(scene, best.model)]
     lines = [
         f"Error to expect, against the reference ({reference.method}, within {100 * reference.error_estimate:.2g} %): "
         f"the joints themselves, solved as one, {_said(model_errors)}."
@@ -186,8 +212,8 @@ def _label(attempt: Attempt) -> str:
     return f"{attempt.writer} {attempt.model.joints}".strip()
 
 
-def _supports(scene: Scene, handover: Handover, engine: str) -> list[str]:
-    """What is left out of this scene's supports."""
+def _left_out(scene: Scene, handover: Handover, engine: str) -> list[str]:
+    """What is left out of this scene's supports and actions."""
     lines = []
     sliding = [joint.name for joint in handover.joints if joint.slide is not None]
     if sliding and engine not in ("pymunk", "mujoco", "json"):
@@ -198,6 +224,8 @@ def _supports(scene: Scene, handover: Handover, engine: str) -> list[str]:
     settled = [name for name, node in scene.nodes.items() if node.settlement != (0.0, 0.0)]
     if settled:
         lines.append(f"Settlements are left out: {', '.join(settled)}.")
+    if scene.loads or scene.motion is not None:
+        lines.append("Loads and velocities are left out.")
     return lines
 
 

@@ -183,7 +183,11 @@ def hand_over(scene: Scene, model: Model, name: str = "", damping_ratio: float =
     if model.law != LAW:
         raise ValueError(f'engines are given the law "{LAW}", not "{model.law}"')
     if not scene.members:
-        raise InputError("members", "the scene has none", "name a scene with members to hand over")
+        raise InputError(
+            "members",
+            "the scene has none, and what is handed over are members cut into bodies and joints",
+            "name a scene with members; joints between loose bodies have their numbers in the scene file",
+        )
     assembly = assemble(scene, model, shapes=False)
     bodies = list(assembly.space.bodies)
     number = {body: i for i, body in enumerate(bodies)} | dict.fromkeys(assembly.grounds, -1)

@@ -180,6 +180,16 @@ def test_bad_options_are_refused_before_the_work(
     assert not (tmp_path / "o").exists()
 
 
+def test_a_motion_is_sent_to_its_calibration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = builtin_text("cantilever").split("[push]")[0] + '[motion]\nduration = "0.1 s"\n'
+    (tmp_path / "scene.toml").write_text(text)
+    assert ductile("study", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "o")) == 2
+    assert "has only a motion; add [push], or read the speed against error of `ductile calibrate`" in (
+        capsys.readouterr().err.replace("\n", " ")
+    )
+    assert not (tmp_path / "o").exists()
+
+
 @pytest.mark.parametrize("dt", [1 / 30, 1 / 240])
 @pytest.mark.parametrize(("ratio", "factor"), [(1e-5, 1.0), (1e5, 1.0), (1.0, 1e-3), (1.0, 1e6)])
 def test_hard_cases_are_right_with_ductile_joints(dt: float, ratio: float, factor: float) -> None:

@@ -61,6 +61,9 @@ def study(
     from scene import load_scene
 
     loaded = load_scene(scene)
+    if loaded.pushed is None and loaded.motion is not None:
+        cure = "add [push], or read the speed against error of `ductile calibrate`, which follows motions"
+        raise InputError("push", "a study pushes its scene over, and this one has only a motion", cure)
     folder = OutputFolder.of_scene(scene, output)
     messages = Console(stderr=True)
     with explained_compilation(messages):

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 
 from calibration.export import joint_table, settings
 from calibration.figures import FAINT, MODEL, REFERENCE, STYLE
-from calibration.fitting import BOUNDS, Fit, LoadCase, Name, check_parameters, fit, fitted
+from calibration.fitting import Fit, LoadCase, fit
 from calibration.page import report_page
+from calibration.parameters import BOUNDS, Name, check_parameters, fitted
 from calibration.report import report_markdown
 from calibration.sheets import Picture, Report, percent
 from calibration.tables import fit_sheets, in_words, joint_sheet, stepping
@@ -192,6 +193,7 @@ _SENSIBLE: dict[Name, tuple[float, float]] = {
     "strength": (1e-3, 1e3),
     "spread": (0.0, 0.95),
     "hardening": (0.0, 0.95),
+    "reserve": (0.0, 10.0),
     "hinge_length": (1e-3, 1e3),
     "damping": (0.0, 10.0),
 }

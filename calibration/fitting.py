@@ -1,14 +1,7 @@
 """Fitting what is left after the choice of a model: least squares over load cases, inside bounds.
 
 A deep beam is softer and stronger than beam theory says, and yields over a wider range of loads; a tested one has a
-yield stress and a damping of its own. The parameters multiply or replace what the scene says of all its members:
-
-    stiffness     of E (and so of EA, GA_s, EI)
-    strength      of the yield stress
-    spread        s: half of every fibre yields at (1 - s) fy, the other half at (1 + s) fy
-    hardening     E_t / E beyond yield, in place of the material's
-    hinge_length  of the rule "radau", as a multiple of the section's depth
-    damping       viscous damping as a share of stiffness [s], as of `sim.Model`
+yield stress and a damping of its own. `calibration.parameters` says what can be fitted, and what it stands for.
 
 Residuals are differences of load over the largest load, or of displacement over the peak for a motion, at the points of
 the references. A parameter is named as not determined when the Jacobian, in units of the parameters' ranges, has a
@@ -19,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -27,22 +20,12 @@ from scipy.optimize import least_squares
 
 from calibration.comparable_motion import follow_model
 from calibration.comparable_push import push_model
-from capacity import InputError, Material, StressStrain
+from calibration.parameters import BOUNDS, Name, check_parameters, fitted
 from fem_reference import PushAnswer, motion, push_over
 from scene import Scene
 from scene.quantities import Force, ForcePerLength, Length, Moment, Speed
 from sim import IMPLICIT_EULER, Model
 
-Name = Literal["stiffness", "strength", "spread", "hardening", "hinge_length", "damping"]
-#: Start and bounds of each parameter.
-BOUNDS: dict[Name, tuple[float, float, float]] = {
-    "stiffness": (1.0, 0.5, 1.5),
-    "strength": (1.0, 0.5, 2.0),
-    "spread": (0.1, 0.0, 0.6),
-    "hardening": (0.01, 0.0, 0.1),
-    "hinge_length": (1.0, 0.25, 4.0),
-    "damping": (1e-3, 0.0, 0.02),
-}
 #: Share of the largest singular value of the Jacobian below which a direction counts as not determined.
 WEAK = 1e-3
 #: Share of its range within which a parameter counts as at its bound.
@@ -181,7 +164,7 @@ def fit(
         Static, cyclic and dynamic together.
     model : Model
     names : sequence of str
-        Parameters to fit; keys of `BOUNDS`.
+        Parameters to fit; keys of `calibration.parameters.BOUNDS`.
     checks : sequence of LoadCase
         Not seen by the fit.
     bounds : mapping
@@ -217,59 +200,30 @@ def fit(
     values: dict[Name, float] = dict(zip(names, (low + span * found.x).tolist(), strict=True))
     close = np.minimum(found.x, 1.0 - found.x) <= _AT_BOUND
 
-    def largest(case: LoadCase, parameters: Mapping[Name, float]) -> float:
-        return float(np.abs(case.residuals(model, parameters)).max())
-
-    return Fit(
-        model=model,
-        parameters=values,
-        bounds={name: bounds[name][1:] for name in names},
-        at_bound=tuple(name for name, held in zip(names, close.tolist(), strict=True) if held),
-        undetermined=_undetermined(found.jac, names),
-        before={case.name: largest(case, {}) for case in cases},
-        after={case.name: largest(case, values) for case in cases},
-        checks={case.name: (largest(case, {}), largest(case, values)) for case in checks},
+    return checked(
+        Fit(
+            model=model,
+            parameters=values,
+            bounds={name: bounds[name][1:] for name in names},
+            at_bound=tuple(name for name, held in zip(names, close.tolist(), strict=True) if held),
+            undetermined=_undetermined(found.jac, names),
+            before={case.name: _largest(case, model, {}) for case in cases},
+            after={case.name: _largest(case, model, values) for case in cases},
+            checks={},
+        ),
+        checks,
     )
 
 
-def check_parameters(names: Sequence[Name], model: Model) -> None:
-    """Raise InputError for a parameter that ``model`` does not have."""
-    if "hinge_length" in names and model.rule != "radau":
-        raise InputError("hinge_length", f'the rule "{model.rule}" has none', 'take the rule "radau"')
+def checked(found: Fit, cases: Sequence[LoadCase]) -> Fit:
+    """``found``, checked on load ``cases`` that it was not made from."""
+    model = found.model
+    errors = {case.name: (_largest(case, model, {}), _largest(case, model, found.parameters)) for case in cases}
+    return replace(found, checks={**found.checks, **errors})
 
 
-def fitted(scene: Scene, model: Model, parameters: Mapping[Name, float]) -> tuple[Scene, Model]:
-    """``scene`` and ``model`` with ``parameters`` in place."""
-    members = {
-        name: msgspec.structs.replace(member, material=_fitted_material(member.material, parameters))
-        for name, member in scene.members.items()
-    }
-    if "damping" in parameters:
-        model = replace(model, damping=parameters["damping"])
-    if "hinge_length" in parameters:
-        depth = max(float(member.section.depth) for member in scene.members.values())
-        model = replace(model, hinge_length=parameters["hinge_length"] * depth)
-    return msgspec.structs.replace(scene, members=members), model
-
-
-def _fitted_material(material: Material, parameters: Mapping[Name, float]) -> Material:
-    E = material.youngs_modulus * parameters.get("stiffness", 1.0)
-    fy = material.yield_stress * parameters.get("strength", 1.0)
-    slope = material.tangent_modulus / material.youngs_modulus
-    hardening = E * parameters.get("hardening", slope)
-    spread = parameters.get("spread", 0.0)
-    curve = material.curve
-    if spread > 0.0:
-        middle = 0.5 * (E + hardening)
-        first = (1.0 - spread) * fy / E
-        breaks = np.array([first, first + 2.0 * spread * fy / E])
-        curve = StressStrain(breaks, np.array([E, middle, hardening]), material.ultimate_strain)
-        fy *= 1.0 - spread
-    elif curve is not None:
-        scale = E / material.youngs_modulus
-        curve = StressStrain(curve.breaks * (fy / material.yield_stress / scale), curve.slopes * scale)
-    name = f"{material.name} fitted"
-    return Material(name, E, fy, material.density, material.poissons_ratio, hardening, material.ultimate_strain, curve)
+def _largest(case: LoadCase, model: Model, parameters: Mapping[Name, float]) -> float:
+    return float(np.abs(case.residuals(model, parameters)).max())
 
 
 def _undetermined(jacobian: np.ndarray, names: Sequence[Name]) -> tuple[Name, ...]:

@@ -93,7 +93,7 @@ def candidates_to_fit(scene: Scene) -> list[Model]:
 
     In a stocky member yielding spreads further than beam theory says, which few joints mimic that stand for long parts.
     """
-    models = [Model("lobatto", joints, "fibre", fibres) for joints in (3, 4, 5, 7) for fibres in (8, 12, 16, 24)]
+    models = [Model("lobatto", joints, "fibre", fibres) for joints in (3, 4, 5, 6, 8, 10) for fibres in (8, 12, 16, 24)]
     return sorted(models, key=lambda model: relative_cost(model, scene.members))
 
 

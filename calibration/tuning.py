@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import msgspec
 
 from calibration.comparable_push import push_model
 from calibration.errors import Findings, compare, find
-from calibration.fitting import Fit, LoadCase, fit, fitted
+from calibration.fitting import Fit, LoadCase, checked, fit
 from calibration.frequencies import model_frequency, reference_frequency
 from calibration.limits import branch_remarks, shear_remarks, what_limits
 from calibration.member_plans import MemberPlan, member_plans
+from calibration.parameters import BOUNDS, DEEP_BEAM, fitted
 from calibration.planner import candidates, candidates_to_fit, relative_cost
 from calibration.saving import give_less
 from calibration.trials import Failure, Trial
@@ -185,7 +186,8 @@ def calibrate(
     frequency = (0.0 if bench.fits else reference_frequency(scene), model_frequency(scene, best.model))
     if bench.fits:
         watch("reference of a load case that the fit did not see", 0.0)
-        trials[trials.index(best)] = best = replace(best, fit=bench.fit(best.model, checks=[LoadCase.unseen(scene)]))
+        assert best.fit is not None
+        trials[trials.index(best)] = best = replace(best, fit=checked(best.fit, [LoadCase.unseen(scene)]))
     return Calibration(
         name=name or scene.title,
         scene=scene,
@@ -233,9 +235,14 @@ class Bench:
         """Whether a model's parameters are fitted: to a continuum, which beam theory does not describe."""
         return isinstance(self.reference, PlanePush)
 
-    def fit(self, model: Model, checks: Sequence[LoadCase] = ()) -> Fit:
-        """Parameters of ``model`` fitted to the reference."""
-        return fit([LoadCase.of_push("push", self.scene, self.reference)], model, checks=checks)
+    def fit(self, model: Model) -> Fit:
+        """Parameters of ``model`` fitted to the reference, beginning with those of the model before."""
+        last = self.trials[-1].fit if self.trials else None
+        start = {} if last is None else last.parameters
+        if last is not None and (last.at_bound or last.undetermined):
+            start = {}  # nothing to go on from
+        bounds = {name: (start.get(name, first), low, high) for name, (first, low, high) in BOUNDS.items()}
+        return fit([LoadCase.of_push("push", self.scene, self.reference)], model, DEEP_BEAM, bounds=bounds)
 
     def try_out(self, model: Model) -> Trial | None:
         """Push ``model`` as the reference was pushed; None when it breaks down. What was tried is not tried again."""

@@ -150,5 +150,5 @@ def test_beam_mesh_is_fine_where_it_is_held(ends: tuple[bool, bool]) -> None:
     steps = np.diff(x)
     assert mesh.points[:, 0].max() == pytest.approx(0.5)
     assert np.ptp(mesh.points[:, 1]) == pytest.approx(0.1)
-    assert ((steps[0] < 0.1 / 100), (steps[-1] < 0.1 / 100)) == ends
+    assert ((steps[0] < 0.1 / 25), (steps[-1] < 0.1 / 25)) == ends
     assert isinstance(free_continuum(mesh), Continuum)

@@ -1,46 +1,40 @@
-"""Structured meshes of a straight beam, fine where it is clamped and yields.
+"""Structured meshes of a straight beam, fine where it is held and yields.
 
-A plastic hinge of a material that does not harden is as short as its elements let it be, and a clamp has singular
-corners: both errors fall in proportion to the elements there, the others much faster. So from one level to the next
-the elements at an end and in its corners become four times smaller, the rest two times.
+From one level to the next every element becomes half as long and half as high, everywhere: only then do errors of all
+kinds fall by factors of their own, and may be extrapolated.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 
 import numpy as np
 from skfem import MeshQuad, MeshQuad2
 
 from fem_reference.plane.mesh import PlaneMesh
 
-#: Length of the elements at a held end and height of those at a corner, as shares of the depth, on level 0; largest
-#: length where it yields, and elsewhere, and largest height.
-_END, _CORNER, _YIELDING, _ELSEWHERE, _HEIGHT = 1 / 32, 1 / 16, 1 / 4, 1 / 2, 1 / 6
-#: A tip-loaded beam of rectangular section yields over the last third of its length, more with shear or hardening.
-_YIELDING_LENGTH = 0.45
-_GROWTH, _CORNER_GROWTH = 1.3, 1.5
+#: On level 0, as shares of the depth: length of the elements at a held end, its growth with the distance from there,
+#: and the largest; height of those at top and bottom, where a clamp has singular corners, growth, and the largest. The
+#: front of yielding moves through the depth, so that the curve is as smooth as the elements are low.
+_LENGTH, _HEIGHT = (1 / 16, 0.225, 3 / 4), (3 / 32, 0.375, 0.12)
 
 
-def beam_mesh(length: float, depth: float, level: int, ends: tuple[bool, bool] = (True, False)) -> PlaneMesh:
+def beam_mesh(
+    length: float, depth: float, level: int, ends: tuple[bool, bool] = (True, False), *, half: bool = False
+) -> PlaneMesh:
     """A beam from x = 0 to ``length``, |y| ≤ ``depth`` / 2, with edges "left", "right", "bottom" and "top"; SI.
 
-    ``ends`` says which of its ends, left and right, are held; the mesh is fine there.
+    ``ends`` says which of its ends, left and right, are held; the mesh is fine there. ``half`` asks for the upper half
+    alone, whose bottom is the beam's axis.
     """
-    end, corner = _END / 4**level, _CORNER / 4**level
-    half = _graded(0.5, corner, _CORNER_GROWTH, lambda y: _HEIGHT / 2**level)
-    y = depth * np.concatenate([half - 0.5, 0.5 - half[-2::-1]])
-    slender = length / depth
-    part = slender if not all(ends) else 0.5 * slender
-
-    def largest(x: float) -> float:
-        return _YIELDING / 2**level if x < _YIELDING_LENGTH * part else _ELSEWHERE
-
-    x = depth * _graded(part, end, _GROWTH, largest)
+    below = depth * (_graded(0.5, _HEIGHT, level) - 0.5)
+    y = -below[::-1] if half else np.concatenate([below, -below[-2::-1]])
     if all(ends):
+        x = depth * _graded(0.5 * length / depth, _LENGTH, level)
         x = np.concatenate([x, length - x[-2::-1]])
-    elif ends[1]:
-        x = length - x[::-1]
+    else:
+        x = depth * _graded(length / depth, _LENGTH, level)
+        x = length - x[::-1] if ends[1] else x
     return tensor_mesh(x, y)
 
 
@@ -52,10 +46,15 @@ def tensor_mesh(x: np.ndarray, y: np.ndarray) -> PlaneMesh:
     return mesh.with_sides()
 
 
-def _graded(length: float, first: float, growth: float, largest: Callable[[float], float]) -> np.ndarray:
-    """Coordinates from 0 to ``length`` in steps that grow from ``first`` by ``growth``, none above ``largest``."""
-    places, step = [0.0], first
-    while places[-1] < length:
-        places.append(places[-1] + step)
-        step = min(step * growth, largest(places[-1]))
-    return np.array(places) * (length / places[-1])
+def _graded(length: float, sizes: tuple[float, float, float], level: int) -> np.ndarray:
+    """Coordinates from 0 to ``length`` in steps of about min(first + growth x, largest) / 2^level."""
+    first, growth, largest = sizes
+    # How many steps of level 0 there are up to x: ln(1 + growth x / first) / growth, then evenly.
+    even = min((largest - first) / growth, length)
+    grown = math.log1p(growth * even / first) / growth
+    steps = grown + (length - even) / largest
+    count = math.ceil(steps) * 2**level if level >= 0 else math.ceil(steps * 2.0**level)
+    share = np.linspace(0.0, steps, count + 1)
+    x = np.where(share < grown, first * np.expm1(growth * share) / growth, even + (share - grown) * largest)
+    x[-1] = length
+    return np.asarray(x)

@@ -18,8 +18,8 @@ from fem_reference.plane.j2 import J2
 from fem_reference.plane.mesh_file import body_from_mesh
 from scene import Plane, Scene
 
-#: Meshes of a member that are worth their time, and elements of a refined mesh from a file that are.
-_MEMBER_LEVELS, _MOST_ELEMENTS = 3, 8000
+#: Meshes of a member that are worth their time, more of half of it; elements of a refined mesh from a file that are.
+_MEMBER_LEVELS, _HALF_LEVELS, _MOST_ELEMENTS = 3, 4, 8000
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,8 @@ class PlaneScene:
         The body at a level, 0 the coarsest.
     levels : int
         How many there are.
+    half : bool
+        Whether the body is only the upper half of an antisymmetric one, as `halves` has it.
     unit_load : float
         Load that a load factor of 1 stands for [N].
     described : str
@@ -40,6 +42,7 @@ class PlaneScene:
 
     body: Callable[[int], Body]
     levels: int
+    half: bool
     unit_load: float
     described: str
 
@@ -125,7 +128,7 @@ def _meshed(scene: Scene, plane: Plane) -> PlaneScene:
     body(0)  # faults of the boundary are found before any long work is done
     held = ", ".join(f"{name} {kind}" for name, kind in plane.supports.items())
     finer = int(math.log(max(_MOST_ELEMENTS / len(mesh.cells), 4.0), 4.0))
-    return PlaneScene(body, 1 + finer, 1.0, f"mesh {Path(plane.mesh or '').name}, {held}")
+    return PlaneScene(body, 1 + finer, False, 1.0, f"mesh {Path(plane.mesh or '').name}, {held}")
 
 
 def _member(scene: Scene) -> PlaneScene:
@@ -147,17 +150,22 @@ def _member(scene: Scene) -> PlaneScene:
         spread = spread + np.array(load.per_length)
         at_end = at_end + np.array(load.force)
     proportional = scene.loads_of("proportional")
+    pulls = np.array([way, turn @ spread, turn @ at_end])
+    half = bool(np.all(np.abs(pulls[:, 0]) <= 1e-9 * np.abs(pulls[:, 1])))
+    parts = 2 if half else 1
+    if half:
+        supports["bottom"] = "roller-y"
 
     def body(level: int) -> Body:
-        mesh = beam_mesh(length, depth, level, ends)
+        mesh = beam_mesh(length, depth, level, ends, half=half)
         law = J2.of([member.material], mesh.group, plane.hardening)
-        edges = boundary(mesh, supports, pushed, (float(way[0]), float(way[1])), f"members.{name}")
-        continuum = Continuum(mesh, thickness, law, edges.dofs, edges.axes)
+        edges = boundary(mesh, supports, pushed, (float(way[0]), float(way[1])), f"members.{name}", half=half)
+        continuum = Continuum(mesh, parts * thickness, law, edges.dofs, edges.axes)
         dead = continuum.body_force(np.tile(turn @ spread / member.section.area, (len(mesh.cells), 1)))
-        shares = edge_weights(mesh, pushed) / depth
+        shares = parts * edge_weights(mesh, pushed) / depth
         pull = np.einsum("n,d,ned->ne", shares, turn @ at_end, edges.axes)
         dead += np.bincount(edges.dofs.ravel(), weights=pull.ravel(), minlength=continuum.size)
         return Body(continuum, edges, dead)
 
     unit = sum(float(np.hypot(*load.force)) for load in proportional) if proportional else 1.0
-    return PlaneScene(body, _MEMBER_LEVELS, unit, f"{plane.root} root")
+    return PlaneScene(body, _HALF_LEVELS if half else _MEMBER_LEVELS, half, unit, f"{plane.root} root")

@@ -57,9 +57,17 @@ class Boundary:
 
 
 def boundary(
-    mesh: PlaneMesh, supports: Mapping[str, str], pushed: str, direction: tuple[float, float], place: str
+    mesh: PlaneMesh,
+    supports: Mapping[str, str],
+    pushed: str,
+    direction: tuple[float, float],
+    place: str,
+    *,
+    half: bool = False,
 ) -> Boundary:
     """The boundary of ``mesh`` with its edges held as ``supports`` say and the edge ``pushed`` along ``direction``.
+
+    With ``half``, the mesh is the upper half of a body, and the parabola of a contraction-free edge that of the whole.
 
     Raises
     ------
@@ -82,7 +90,7 @@ def boundary(
         nodes = np.unique(mesh.edges[name])
         holds = _HOLDS.get(kind, (False, False))
         if kind == "contraction-free":
-            normal, weights = _parabola(mesh, name, place)
+            normal, weights = _parabola(mesh, name, place, half)
             holds = (normal == 0, normal == 1)
             rows.append(np.zeros(len(used)))
             rows[-1][dofs[nodes, 1 - normal]] = weights[nodes]
@@ -116,12 +124,14 @@ def edge_weights(
     return np.bincount(sides.ravel(), weights=shares.ravel(), minlength=len(mesh.points))
 
 
-def _parabola(mesh: PlaneMesh, name: str, place: str) -> tuple[int, np.ndarray]:
+def _parabola(mesh: PlaneMesh, name: str, place: str, half: bool) -> tuple[int, np.ndarray]:
     """The axis normal to a straight edge, and weights by node that sum to one."""
     at = mesh.points[np.unique(mesh.edges[name])]
     low, high = at.min(axis=0), at.max(axis=0)
     normal = int(np.argmin(high - low))
     size, middle = (high - low)[1 - normal], 0.5 * (high + low)[1 - normal]
+    if half:
+        size, middle = 2.0 * size, low[1 - normal]
     if (high - low)[normal] > 1e-9 * size:
         fault = f'the edge "{name}" is not straight along x or y'
         raise InputError(place, fault, 'hold it with "clamped", or turn the mesh')

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from fem_reference.legs import even_legs, resolved_legs
 from fem_reference.plane.bodies import plane_scene
 from fem_reference.plane.continuum import Continuum, State
 from fem_reference.plane.equilibrium import Body, Control
+from fem_reference.plane.extrapolation import SAFETY, Convergence
+from fem_reference.plane.halves import whole
 from fem_reference.plane.path import Trace, trace
 from fem_reference.pushover import Energy
 from scene import Scene
@@ -21,15 +24,15 @@ from scene import Scene
 POINTS, POINTS_A_LEG = 60, 30
 #: Points at which the fields are kept.
 SNAPSHOTS = 13
-#: The error that is aimed at when nothing else is said: what the plastic hinge of a perfectly plastic clamp allows in
-#: reasonable time.
+#: The error that is aimed at when nothing else is said.
 TOLERANCE = 2e-3
-#: The error of a plastic hinge or a clamp falls in proportion to the size of its elements, which is at least halved
-#: from mesh to mesh: what the finer mesh lacks is what the last refinement brought. The factor of safety on that is the
-#: one of Roache's grid convergence index.
-SAFETY = 1.25
 #: A path is level when its last slope is below this share of its first.
 _LEVEL = 1e-4
+_DISPLACEMENT, _LOAD = attrgetter("displacement"), attrgetter("load")
+_ENERGIES = tuple(map(attrgetter, ("external", "elastic", "plastic")))
+
+#: Displacements [m] and loads [N], or load factors.
+Curve = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -79,12 +82,13 @@ class PlanePush:
     displacement : (k,) float
         Displacement of the pushed edge along the push [m], from 0.
     load : (k,) float
-        Force on it along the push [N]; with proportional loads in the scene, their load factor.
+        Force on it along the push [N]; with proportional loads in the scene, their load factor. Extrapolated from
+        three meshes where that is the better estimate, and so are the energies.
     error_estimate : float
-        Largest difference from the curve on the next coarser mesh, over the largest load, times `SAFETY` [-]. Never
-        less than what is out of balance.
+        Estimated largest error of the load, over the largest load [-]; see `extrapolation`. Never less than what is out
+        of balance.
     elements : int
-        Of the finest mesh.
+        Of the finest mesh, both halves of one of which one was solved.
     seconds : float
         Time that all meshes took.
     hinges : tuple of HingeEvent
@@ -160,37 +164,42 @@ def plane_push(
     _, first = solve(0)
     if not led_by_load:
         legs = resolved_legs(stops, legs, np.array(first.load))
-    coarse_body, coarse = solve(0)
+    body, coarse = solve(0)
+    paths = [coarse]
     for level in range(1, found.levels):
+        coarse_body, coarse = body, paths[-1]
         body, fine = solve(level)
-        apart = _apart(fine, coarse) if led_by_load else _difference(fine.load, coarse.load)
-        error = max(SAFETY * apart, fine.imbalance)
-        if error <= tolerance or level == found.levels - 1:
+        paths.append(fine)
+        converged = Convergence.of(paths[-2:] if led_by_load else paths)
+        error = SAFETY * _apart(fine, coarse) if led_by_load else converged.error(_LOAD)
+        error = max(error, fine.imbalance)
+        if error <= tolerance:
             break
-        coarse_body, coarse = body, fine
-    mesh = body.continuum.mesh
-    pairs = ((fine.external, coarse.external), (fine.elastic, coarse.elastic), (fine.plastic, coarse.plastic))
-    scale = max(map(abs, fine.external))
-    external, elastic, plastic = (np.array(values) for values, _ in pairs)
-    load = np.array(fine.load) / found.unit_load
+    displacement, load = converged.answer(_DISPLACEMENT), converged.answer(_LOAD) / found.unit_load
+    external, elastic, plastic = (converged.answer(along) for along in _ENERGIES)
+    scale = float(np.abs(external).max())
+    continuum, states = body.continuum, tuple(state for _, state in fine.snapshots)
+    if found.half:
+        continuum, states = whole(continuum, states)
+    mesh = continuum.mesh
     kind = "triangles" if mesh.cells.shape[1] == 6 else "quadrilaterals"
+    limit = ", load and energy extrapolated" if converged.extrapolated else ""
     return PlanePush(
-        method=f"plane stress continuum, J2 plasticity, quadratic {kind}, small displacements: {found.described}",
-        displacement=np.array(fine.displacement),
+        method=f"plane stress continuum, J2 plasticity, quadratic {kind}, small displacements: "
+        f"{found.described}{limit}",
+        displacement=displacement,
         load=load,
         error_estimate=error,
         elements=len(mesh.cells),
         seconds=time.perf_counter() - started,
-        hinges=_hinges(scene, fine, coarse, found.unit_load, error),
-        outcome=fine.stopped or _outcome(scene, fine),
-        residual=fine.displacement[-1],
+        hinges=_hinges(scene, (displacement, load), _curve(coarse, found.unit_load), found.unit_load, error),
+        outcome=fine.stopped or _outcome(scene, displacement, load),
+        residual=float(displacement[-1]),
         residual_error=SAFETY * abs(fine.displacement[-1] - coarse.displacement[-1]),
-        energy=Energy(external, elastic, plastic, SAFETY * max(_difference(a, b, scale) for a, b in pairs)),
+        energy=Energy(external, elastic, plastic, max(converged.error(along, scale) for along in _ENERGIES)),
         imbalance=fine.imbalance,
         axes=_axes(scene, body, coarse_body),
-        fields=Fields(
-            body.continuum, tuple(at for at, _ in fine.snapshots), tuple(state for _, state in fine.snapshots)
-        ),
+        fields=Fields(continuum, tuple(at for at, _ in fine.snapshots), states),
     )
 
 
@@ -202,13 +211,6 @@ def _apart(fine: Trace, coarse: Trace) -> float:
     other = np.interp(displacement[:top], coarse.displacement[:coarse_top], coarse.load[:coarse_top])
     limits = abs(load[top - 1] - coarse.load[coarse_top - 1])
     return float(max(np.abs(load[:top] - other)[reached].max(), limits) / load[top - 1])
-
-
-def _difference(fine: list[float], coarse: list[float], scale: float = 0.0) -> float:
-    """Largest difference over ``scale``, or the largest value, along the part that both have; 1 when that is none."""
-    both = min(len(fine), len(coarse))
-    a, b = np.array(fine[:both]), np.array(coarse[:both])
-    return float(np.abs(a - b).max() / (scale or np.abs(a).max())) if both > 1 else 1.0
 
 
 def _axes(scene: Scene, fine: Body, coarse: Body) -> dict[str, AxisShape]:
@@ -229,7 +231,7 @@ def _axis(body: Body) -> tuple[np.ndarray, np.ndarray]:
     return points[axis, 0], body.continuum.nodal_displacement(body.state.displacement)[axis]
 
 
-def _hinges(scene: Scene, fine: Trace, coarse: Trace, unit: float, error: float) -> tuple[HingeEvent, ...]:
+def _hinges(scene: Scene, fine: Curve, coarse: Curve, unit: float, error: float) -> tuple[HingeEvent, ...]:
     if scene.meshed is not None or scene.gravity or scene.loads_of("dead") or len(scene.push.stops()) > 1:
         return ()
     ((name, member),) = scene.members.items()
@@ -237,24 +239,28 @@ def _hinges(scene: Scene, fine: Trace, coarse: Trace, unit: float, error: float)
     dx, dy = scene.push_direction()
     if abs(dx * c + dy * s) > 1e-9 or any(scene.nodes[scene.push.node].held):
         return ()
-    force = member.material.yield_stress * member.section.plastic_modulus / length
+    force = member.material.yield_stress * member.section.plastic_modulus / length / unit
     places = [_first_at(force, path) for path in (fine, coarse)]
     if places[0] is None:
         return ()
     root, place = (member.start, 0.0) if scene.push.node == member.end else (member.end, length)
     spread = None if places[1] is None else SAFETY * abs(places[0] - places[1])
-    return (HingeEvent(name, place, root, force / unit, places[0], error, spread),)
+    return (HingeEvent(name, place, root, force, places[0], error, spread),)
 
 
-def _first_at(load: float, path: Trace) -> float | None:
-    """The displacement at which a path first comes to ``load`` [m], if it does."""
-    over = np.array(path.load) >= load
+def _curve(path: Trace, unit: float) -> Curve:
+    return np.array(path.displacement), np.array(path.load) / unit
+
+
+def _first_at(force: float, curve: Curve) -> float | None:
+    """The displacement at which a curve first comes to ``force`` [m], if it does."""
+    displacement, load = curve
+    over = load >= force
     k = int(np.argmax(over))
-    return float(np.interp(load, path.load[k - 1 : k + 1], path.displacement[k - 1 : k + 1])) if over.any() else None
+    return float(np.interp(force, load[k - 1 : k + 1], displacement[k - 1 : k + 1])) if over.any() else None
 
 
-def _outcome(scene: Scene, path: Trace) -> str:
-    load, displacement = np.array(path.load), np.array(path.displacement)
+def _outcome(scene: Scene, displacement: np.ndarray, load: np.ndarray) -> str:
     slopes = np.diff(load) / np.diff(displacement)
     if len(scene.push.stops()) == 1 and not scene.push.unload and abs(slopes[-1]) <= _LEVEL * slopes[0]:
         return f"mechanism: the load stays at {load[-1]:.6g} N"

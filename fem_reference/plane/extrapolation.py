@@ -6,9 +6,9 @@ brought is what is missing, and the limit is (Richardson)
 
     u = 2 u_fine - u_coarse.
 
-What is left of it is taken to fall with the square of the size, as it is seen to: a third of what the third mesh changed
-the extrapolation by. Where steps from mesh to mesh fall less than to a half, the sum of the geometric series is taken
-that they begin. `SAFETY` on all of that is the factor of Roache's grid convergence index.
+What is left of it is taken to fall with the square of the size, as it is seen to: a third of what the third mesh
+changed the extrapolation by. Where steps from mesh to mesh fall less than to a half, the sum of the geometric series is
+taken that they begin. `SAFETY` on all of that is the factor of Roache's grid convergence index.
 """
 
 from __future__ import annotations

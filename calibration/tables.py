@@ -143,8 +143,8 @@ def fit_sheets(found: Fit) -> tuple[Sheet, Sheet]:
         rows.append((name, f"{value:.4g}", f"{low:g} to {high:g}", ", ".join(remarks) or "–"))
     note = (
         "Stiffness and strength are factors of what the scene says of E and fy; spread s: half of each fibre yields at "
-        "1 - s, half at 1 + s of it; hardening is E_t / E, with a reserve r from 1 - r of the strength up to it; the hinge "
-        "length is in section depths, damping in s."
+        "1 - s, half at 1 + s of it; hardening is E_t / E, with a reserve r from 1 - r of the strength up to it; "
+        "the hinge length is in section depths, damping in s."
     )
     errors = [(case, percent(after), percent(found.before[case]), "fitted to") for case, after in found.after.items()]
     errors += [

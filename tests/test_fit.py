@@ -10,8 +10,7 @@ from frames import frame_text, push_down
 
 from calibration.comparable_push import push_model
 from calibration.fitting import LoadCase, fit
-from calibration.parameters import BOUNDS, fitted
-from calibration.tuning import FITTED
+from calibration.parameters import BOUNDS, DEEP_BEAM, fitted
 from capacity import InputError
 from scene import Scene, parse_scene
 from sim import Model, follow
@@ -148,7 +147,7 @@ def test_a_deep_beam_is_followed_whatever_the_step_and_the_pieces() -> None:
     for other in (model, replace(model, dt=1.0 / 240.0), replace(model, joints=8)):
         start = found[-1].parameters if found else {}
         bounds = {key: (start.get(key, first), low, high) for key, (first, low, high) in BOUNDS.items()}
-        found.append(fit([LoadCase("push", scene, displacement, load)], other, FITTED, bounds=bounds))
+        found.append(fit([LoadCase("push", scene, displacement, load)], other, DEEP_BEAM, bounds=bounds))
     for one in found:
         assert one.worst <= 3.5e-3
         assert one.parameters["strength"] == pytest.approx(outputs["P_clamp_over_Pp"][-1], rel=2e-3)

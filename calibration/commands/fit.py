@@ -37,7 +37,8 @@ def fit(
     ----------
     vary
         What to fit: stiffness and strength (factors of E and fy), spread (of yield stresses), hardening (E_t / E),
-        reserve (hardening begins that share below the strength and ends there), hinge_length (in section depths, of the rule "radau"), damping (over stiffness, in seconds).
+        reserve (hardening begins that share below the strength and ends there), hinge_length (in section depths, of
+        the rule "radau"), damping (over stiffness, in seconds).
     bounds
         Where parameters are held, instead of the ordinary bounds ("strength=0.8:1.2, damping=0:0.02").
     weights

@@ -181,7 +181,7 @@ def test_bad_options_are_refused_before_the_work(
 
 
 def test_a_motion_is_sent_to_its_calibration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = builtin_text("cantilever").split("[push]")[0] + '[motion]\nduration = "0.1 s"\n'
+    text = builtin_text("cantilever").split("[push]")[0] + '[motion]\nduration = "0.1 s"\nvelocity = [0, -1]\n'
     (tmp_path / "scene.toml").write_text(text)
     assert ductile("study", str(tmp_path / "scene.toml"), "-o", str(tmp_path / "o")) == 2
     assert "has only a motion; add [push], or read the speed against error of `ductile calibrate`" in (

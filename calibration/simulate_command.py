@@ -9,12 +9,14 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from calibration.live_window import live
 from capacity.units import engineering
-from sim.measures import UNITS, rows
+from sim.joint_arrays import JointArrays
+from sim.measures import UNITS
 from sim.recorded import Recording
 from sim.world import World
 
@@ -48,9 +50,9 @@ class JointTable:
             return
         self._next += self._every
         joints = self._world.all_joints
-        columns = [rows(joints, name) for name in ("force", "deformation", "capacity_used", "dissipated")]
-        for joint, force, deformation, used, work in zip(joints, *columns, strict=True):
-            numbers = [*force[:3], *deformation[:3], float(used), float(work)]
+        read = JointArrays(joints)
+        columns = [read.force, read.deformation, read.capacity_used[:, None], read.dissipated[:, None]]
+        for joint, numbers in zip(joints, np.hstack(columns).tolist(), strict=True):
             label = self._world.labels[joint]
             cells = [f"{number:.9g}" for number in numbers]
             self._writer.writerow([f"{self._world.time:.9g}", label, *cells, int(joint.broken)])
@@ -106,8 +108,8 @@ def energy_table(recording: Recording) -> str:
 def as_object(world: World, name: str, seconds: float, recording: Recording) -> dict[str, Any]:
     """The answer as one object; SI. A figure that there is none of is null."""
     joints = world.all_joints
-    used = [float(value) for value in rows(joints, "capacity_used")]
-    plastic = [bool(row.any()) for row in rows(joints, "plastic_deformation")]
+    read = JointArrays(joints)
+    used = read.capacity_used.tolist()
     structures = {joint.structure for joint in joints if joint.structure is not None}
     most = max(range(len(joints)), key=used.__getitem__, default=None)
     answer: dict[str, Any] = {
@@ -123,10 +125,10 @@ def as_object(world: World, name: str, seconds: float, recording: Recording) -> 
         "units": {name: UNITS[measure.quantity] for name, measure in world.scene.measures.items()},
         "joints": {
             "count": len(joints),
-            "yielded": sum(plastic),
+            "yielded": int(read.plastic_deformation.any(axis=1).sum()),
             "broken": [{"joint": label, "time": moment} for moment, label in world.broken],
             "most_used": None if most is None else {"joint": world.labels[joints[most]], "capacity_used": used[most]},
-            "plastic_work": float(sum(rows(joints, "dissipated"))),
+            "plastic_work": float(read.dissipated.sum()),
         },
         "refined": [{"member": name, "time": moment} for moment, name in world.refined],
         "energy": {account: float(values[-1]) for account, values in recording.energy.items()},

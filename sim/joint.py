@@ -277,7 +277,7 @@ class DuctileJoint(pymunk.Constraint):
     @property
     def broken(self) -> bool:
         """Whether the joint has broken."""
-        return self._structure is not None and self.capacity_used >= 1.0 and not self._structure.active[self._index]
+        return self._structure is not None and bool(self._structure.broken[self._index])
 
     def _row(self, name: str) -> tuple[float, float, float]:
         if self._structure is None:

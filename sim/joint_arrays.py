@@ -30,6 +30,11 @@ class JointArrays:
 
     def _read(self, name: str, *shape: int, kind: type = float) -> np.ndarray:
         """A property of the joints' structures; zeros before the first step."""
+        structures = {joint.structure for joint in self.joints}
+        if len(structures) == 1 and None not in structures:
+            # So it mostly is, and measures look at every step.
+            all_rows: np.ndarray = getattr(structures.pop(), name)[[joint.index for joint in self.joints]]
+            return all_rows
         values: np.ndarray = np.zeros((len(self.joints), *shape), dtype=kind)
         rows: dict[Structure, list[int]] = {}
         for row, joint in enumerate(self.joints):
@@ -83,8 +88,7 @@ class JointArrays:
     @property
     def broken(self) -> np.ndarray:
         """Whether each has broken, (n,) bool."""
-        broken: np.ndarray = (self.capacity_used >= 1.0) & ~self._read("active", kind=bool)
-        return broken
+        return self._read("broken", kind=bool)
 
     @property
     def active_limit(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bisect
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
@@ -13,7 +13,7 @@ import pymunk
 from scene import ALL_JOINTS, Measure
 from scene.programme import JointQuantity
 from sim.joint import DuctileJoint
-from sim.structure import Structure
+from sim.joint_arrays import JointArrays
 
 if TYPE_CHECKING:
     from sim.world import World
@@ -144,37 +144,24 @@ def _of_point(quantity: str, now: Callable[[], tuple[pymunk.Body, tuple[float, f
 
 def _of_joints(quantity: str, joints: Sequence[DuctileJoint]) -> float:
     """Of several joints the largest by size; sums of work and counts."""
+    read = JointArrays(joints)
     if quantity in _FORCES:
-        return _largest(row[_FORCES.index(quantity)] for row in rows(joints, "force"))
+        return _largest(read.force[:, _FORCES.index(quantity)])
     if quantity == "impulse":
-        return _largest(joint.impulse for joint in joints if not joint.broken)
+        return _largest(np.array([joint.impulse for joint in joints])[~read.broken])
     if quantity == "utilisation":
-        return _largest(max(row) for row in rows(joints, "utilisation"))
+        return _largest(read.utilisation[~read.broken])
     if quantity == "capacity-used":
-        return _largest(map(float, rows(joints, "capacity_used")))
+        return _largest(read.capacity_used)
     if quantity == "plastic-work":
-        return float(sum(rows(joints, "dissipated")))
+        return float(read.dissipated.sum())
     if quantity == "broken":
-        return float(sum(joint.broken for joint in joints))
-    plastic = list(rows(joints, "plastic_deformation"))
+        return float(read.broken.sum())
     if quantity == "yielded":
-        return float(sum(bool(np.any(row)) for row in plastic))
+        return float(read.plastic_deformation.any(axis=1).sum())
     column = {"plastic-elongation": 0, "plastic-slip": 2, "plastic-rotation": 3}[quantity]
-    return _largest(row[column] for row in plastic)
+    return _largest(read.plastic_deformation[:, column])
 
 
-def rows(joints: Iterable[DuctileJoint], name: str) -> Iterable[np.ndarray]:
-    """Each joint's row of an array of its structure; no forces in broken ones, and nothing before the first step."""
-    arrays: dict[Structure, np.ndarray] = {}
-    for joint in joints:
-        structure = joint.structure
-        if structure is None or (name in ("force", "utilisation") and joint.broken):
-            yield np.zeros(() if name in ("capacity_used", "dissipated") else 4)
-            continue
-        if structure not in arrays:
-            arrays[structure] = getattr(structure, name)
-        yield arrays[structure][joint.index]
-
-
-def _largest(values: Iterable[float]) -> float:
-    return float(max(values, key=abs, default=0.0))
+def _largest(values: np.ndarray) -> float:
+    return float(values.flat[np.abs(values).argmax()]) if values.size else 0.0

@@ -97,6 +97,12 @@ class Readings:
         return self.tables[at.ACTIVE].astype(bool)
 
     @property
+    def broken(self) -> np.ndarray:
+        """Whether each joint has broken, (n,) bool."""
+        broken: np.ndarray = (self._result[:, at.RESULT_USED] >= 1.0) & (self.tables[at.ACTIVE] == 0)
+        return broken
+
+    @property
     def energy(self) -> Energy:
         """Ledger of the structure since it was built [J]."""
         return Energy(*self.tables[at.LEDGER][: at.LEDGER_TO_COME].tolist())

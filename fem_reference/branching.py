@@ -18,6 +18,8 @@ _ELEMENTS, _FIBRES, _POINTS = 20, 24, 100
 def branches_at(scene: Scene) -> float | None:
     """Displacement up to which a push has but one path, which is stable [m]; None where that is so to its end.
 
+    0 where the frame does not even stand under its dead loads alone.
+
     Looked for where it may be: a frame of small displacements, whose materials do not soften, has one path. Of pushes
     that turn, or are driven by a load or an arc length, nothing is said.
 
@@ -32,6 +34,8 @@ def branches_at(scene: Scene) -> float | None:
     frame = build_frame(scene, _ELEMENTS, _FIBRES)
     state = State(frame, control_vector(scene, frame.node_dofs, frame.size))
     state.carry_dead_loads()
+    if not state.standing:
+        return 0.0
     start, before = state.position, 0.0
     try:
         for target in even_legs(push.stops(), _POINTS)[0].tolist():

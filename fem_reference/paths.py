@@ -112,6 +112,11 @@ class State:
         points.imbalance = self.imbalance
 
     @property
+    def standing(self) -> bool:
+        """Whether the frame stands by itself under the loads that it bears: K is positive definite, or nearly."""
+        return self._sign_and_way()[0] > 0.0
+
+    @property
     def unique(self) -> bool:
         """Whether the path through this state is the only one, and stable, while the way of the loads is prescribed.
 
@@ -119,10 +124,21 @@ class State:
         structure that stands, at limit points of the load both change, and where a second path branches off one does
         (W. T. Koiter, On the stability of elastic equilibrium, 1945; for plastic structures R. Hill, 1958).
         """
-        response, free = self.response, self.solver.free
-        pattern = self.frame.pattern[free]
-        sign, answer = self.solver.solve_with_sign(response.matrices, response.springs, pattern)
-        return sign * float(pattern @ answer[:, 0]) > 0.0
+        sign, way = self._sign_and_way()
+        return sign * float(self.frame.pattern @ way) > 0.0
+
+    @property
+    def reach(self) -> float:
+        """Displacement under control for a unit of the load pattern, over the largest of any [-]."""
+        way = self._sign_and_way()[1]
+        return float(self.control @ way) / max(float(np.abs(way).max()), np.finfo(float).tiny)
+
+    def _sign_and_way(self) -> tuple[float, np.ndarray]:
+        """The sign of det K, and K⁻¹ p, (size,)."""
+        response, free, way = self.response, self.solver.free, np.zeros(self.frame.size)
+        sign, answer = self.solver.solve_with_sign(response.matrices, response.springs, self.frame.pattern[free])
+        way[free] = answer[:, 0]
+        return sign, way
 
     def carry_dead_loads(self) -> None:
         """Apply dead loads and settlements together."""
@@ -200,7 +216,10 @@ class State:
                 answer = self.solver.solve(response.matrices, response.springs, residual, frame.pattern[free])
             except np.linalg.LinAlgError:  # an iterate with a singular tangent: a smaller step may pass it by
                 return False
-            rise = (gap - float(c[free] @ answer[:, 0])) / (float(c[free] @ answer[:, 1]) + e)
+            gained = float(c[free] @ answer[:, 1]) + e
+            if gained == 0.0:  # the loads do not move what is controlled
+                return False
+            rise = (gap - float(c[free] @ answer[:, 0])) / gained
             change = answer[:, 0] + rise * answer[:, 1]
             here = float(residual @ change)
             if not np.isfinite([rise, here]).all():

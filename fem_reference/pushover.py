@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from capacity import InputError
 from fem_reference.frame import Frame
 from fem_reference.frame_mesh import build_frame, control_vector
 from fem_reference.hinge_events import HingeEvent, hinge_events
 from fem_reference.judging import difference, energy_error, outcome, with_errors
 from fem_reference.legs import even_legs, resolved_legs, with_events
 from fem_reference.member_results import MemberErrors, MemberResult, member_results
-from fem_reference.paths import NotConverged, Trace
+from fem_reference.paths import NotConverged, State, Trace
 from fem_reference.programme import trace
 from scene import Scene
 
@@ -23,6 +24,8 @@ POINTS = 200
 POINTS_A_LEG = 100
 _COARSEST = (10, 24)
 _MOST_REFINEMENTS = 5
+#: A node that moves by less than this share of what moves most is not moved.
+_UNMOVED = 1e-9
 _KINEMATICS = {"small": "small displacements", "p-delta": "P–Δ", "large": "corotational large displacements"}
 _YIELDING = {"gradual": "fibre beam elements", "ideal-hinges": "beam elements with ideal hinges"}
 
@@ -125,7 +128,7 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
     Raises
     ------
     InputError
-        When the scene has no push.
+        When the scene has no push, or its loads do not move the pushed node.
     NotConverged
         When the dead loads find no equilibrium, or the push none from its start on.
     """
@@ -135,6 +138,12 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
     legs = even_legs(stops, POINTS if len(stops) == 1 else POINTS_A_LEG)
     first = _solve(scene, elements, fibres, legs, watch)
     if len(first.trace.load) == 1:
+        if not _moved(scene, first.frame):
+            raise InputError(
+                "push.direction",
+                f'the loads do not move node "{scene.push.node}" that way',
+                "push it in the direction in which they do",
+            )
         raise NotConverged(
             f"{first.trace.stopped}: the structure may move without any load; support it, or take a release out"
         )
@@ -174,6 +183,15 @@ def pushover(scene: Scene, tolerance: float = 5e-4, watch: Callable[[float], Non
         energy=Energy(external, elastic, plastic, energy_error(path, coarse.trace)),
         imbalance=path.imbalance,
     )
+
+
+def _moved(scene: Scene, frame: Frame) -> bool:
+    """Whether the loads move the pushed node along the push; of a mechanism nothing can be said."""
+    state = State(frame, control_vector(scene, frame.node_dofs, frame.size))
+    try:
+        return abs(state.reach) > _UNMOVED
+    except np.linalg.LinAlgError:
+        return True
 
 
 @dataclass(frozen=True)

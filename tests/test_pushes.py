@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from frames import frame_scene, push_towards
+from frames import down, frame_scene, push_towards
 
 import sim
 from calibration import calibrate
 from calibration.comparable_push import push_model
-from fem_reference import branches_at
+from capacity import InputError
+from fem_reference import NotConverged, branches_at, pushover
 from scene import Scene
 from sim import Model, Pace
 
@@ -41,6 +42,23 @@ def test_a_column_branches_off_at_eulers_load(head: str, effective: float) -> No
 
 def test_a_disturbed_column_has_one_path() -> None:
     assert branches_at(column("free", (0, -1), 0.05, disturbed=0.01)) is None
+
+
+def test_a_column_that_its_dead_load_buckles_is_told() -> None:
+    heavy = 'node = "B"\nforce = [0.0, -5e3]\nkind = "dead"'  # four times Euler's load
+    nodes = {"A": (0.0, 0.0, "clamped"), "B": (0.0, LENGTH, "free")}
+    push = push_towards("B", (1, 0), 0.01)
+    scene = frame_scene(
+        nodes, [("A", "B")], push, [heavy], section="rectangle 20x20 mm", material=STRONG, kinematics="p-delta"
+    )
+    with pytest.raises(NotConverged, match="not stable under its own weight and dead loads"):
+        calibrate(scene)
+
+
+def test_loads_that_do_not_move_the_node_are_told() -> None:
+    nodes = {"A": (0.0, 0.0, "clamped"), "B": (LENGTH, 0.0, "free")}
+    with pytest.raises(InputError, match='the loads do not move node "B" that way'):
+        pushover(frame_scene(nodes, [("A", "B")], push_towards("B", (1, 0), 0.01), [down("B")]))
 
 
 def test_calibration_compares_up_to_there_and_says_so() -> None:

@@ -59,35 +59,34 @@ class SecondOrder:
         self._row = {body: i for i, body in enumerate(self._bodies)}
         self._inertia = np.array([self._own_inertia.setdefault(body, body.moment) for body in self._bodies])
         self._start = np.zeros(len(self._bodies))
-        # Σ r · F of every body for a unit of N and Q in every joint; both turn with it. Tension pulls the first body
-        # of a joint along its axis.
-        self._of_joints = np.zeros((len(self._bodies), len(assembly.joints), 2))
-        # Share of the frame of every joint in the turn of every body, and the pair of unit forces across it.
-        self._of_frames = np.zeros((len(self._bodies), len(assembly.joints)))
-        self._across = np.zeros((len(self._bodies), len(assembly.joints), 3))
-        self._carried = np.zeros(len(assembly.joints))
+        sides = []
         for k, joint in enumerate(assembly.joints):
+            x, y = -math.sin(joint.direction), math.cos(joint.direction)
             turn = joint.geometry[at.TURN]
-            sides = (
+            # Tension pulls the first body of a joint along its axis.
+            for body, sign, anchor, rest, share in (
                 (joint.a, 1.0, at.ANCHOR_A, at.REST_A, 1.0 - turn),
                 (joint.b, -1.0, at.ANCHOR_B, at.REST_B, turn),
-            )
-            for body, sign, anchor, rest, share in sides:
+            ):
                 if body in self._row:
                     self._start[self._row[body]] = joint.direction - joint.geometry[rest]
                     arm = pymunk.Vec2d(*joint.geometry[anchor : anchor + 2]).rotated(-joint.geometry[rest])
-                    self._of_joints[self._row[body], k] += sign * arm.x, sign * arm.y
-                    self._of_frames[self._row[body], k] += share
-                    x, y = -math.sin(joint.direction), math.cos(joint.direction)
-                    self._across[self._row[body], k] += sign * x, sign * y, sign * arm.x
+                    sides.append((self._row[body], k, sign * arm.x, sign * arm.y, share, sign * x, sign * y))
+        # Of every side of a joint: r along and across its axis, which turn with the body; the body's share in the
+        # turn of its frame; a unit force across it.
+        table = np.array(sides).T
+        self._body_of, self._joint_of = table[:2].astype(int)
+        self._along, self._across, self._share, *self._normal = table[2:]
+        self._carried = np.zeros(len(assembly.joints))
 
     def act(self, dt: float, dead_share: float = 1.0, factor: float = 0.0) -> None:
         """Act in the next step of ``dt`` [s], with a share of the dead loads and a load factor as in the last."""
         if self._structure is not self._assembly.structure:
             self._take()
         N, Q, _ = self._structure.force.T
-        reach = np.einsum("bjk,jk->b", self._of_joints, np.column_stack([N, Q + self._carried]))
-        slipped = self._of_frames @ (N * self._structure.deformation[:, 1])
+        slipped = N * self._structure.deformation[:, 1]
+        of, across = self._joint_of, Q + self._carried
+        reach = self._on_bodies(self._along * N[of] + self._across * across[of])
         for loads, share in ((self._dead_loads, dead_share), (self._pattern, factor)):
             for load in loads:
                 if load.body in self._row:
@@ -96,12 +95,20 @@ class SecondOrder:
         angle, step = np.array([(body.angle, dt * body.angular_velocity) for body in self._bodies]).T
         # Chipmunk moves the bodies by one step before it asks for forces.
         turned = angle + step - self._start
-        self._carried = self._more * N * (turned @ self._of_frames)
+        frames = np.bincount(of, weights=self._share * turned[self._body_of], minlength=len(N))
+        self._carried = self._more * N * frames
         turn = self._more * turned + (self._more + 1.0) * step
-        pairs = np.einsum("bjk,j->bk", self._across, self._carried)
-        pairs[:, 2] -= turn * reach + self._more * slipped
+        x, y = (self._on_bodies(normal * self._carried[of]) for normal in self._normal)
+        moments = (
+            self._on_bodies(self._along * self._carried[of] - self._more * self._share * slipped[of]) - turn * reach
+        )
         implicit = (self._inertia + (self._more + 1.0) * dt * dt * np.maximum(reach, 0.0)).tolist()
-        for body, (x, y, moment), inertia in zip(self._bodies, pairs.tolist(), implicit, strict=True):
+        forces = np.column_stack([x, y, moments]).tolist()
+        for body, (fx, fy, moment), inertia in zip(self._bodies, forces, implicit, strict=True):
             body.moment = inertia
-            body.force += x, y
+            body.force += fx, fy
             body.torque += moment
+
+    def _on_bodies(self, of_sides: np.ndarray) -> np.ndarray:
+        """What the sides of all joints add up to on every body, (bodies,)."""
+        return np.bincount(self._body_of, weights=of_sides, minlength=len(self._bodies))

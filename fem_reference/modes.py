@@ -26,6 +26,8 @@ from fem_reference.member_mesh import AXIAL, TRANSVERSE, LinearWithBubble, turne
 from scene import Scene
 
 _COARSEST = 20
+# Shares of ω² ~ Σ K / Σ M: where modes are looked for from, and what is a movement without deformation.
+_BELOW, _RIGID = 1e-9, 1e-14
 # Columns of an element's degrees of freedom that are rotations of its ends.
 _TURNS = (2, 5)
 
@@ -92,7 +94,7 @@ class Modes:
     Attributes
     ----------
     frequency : (k,) float
-        From the lowest [Hz].
+        From the lowest [Hz]; 0 where nothing holds the frame.
     error_estimate : (k,) float
         Difference from those of half as many elements, as a share [-].
     shape : (k, size) float
@@ -117,7 +119,8 @@ def natural_modes(scene: Scene, count: int = 3, elements: int = 2 * _COARSEST) -
     across = frame.chords.across(frame.chords.span / frame.chords.length[:, None])[:, 3:5]
     moved = shape[:, frame.dofs[:, 3:5]]
     bending = np.sum(np.sum(moved * across, axis=2) ** 2, axis=1) / np.sum(moved**2, axis=(1, 2))
-    return Modes(fine, np.abs(fine - coarse) / fine, shape, bending, frame)
+    error = np.abs(fine - coarse) / np.where(fine > 0.0, fine, 1.0)
+    return Modes(fine, error, shape, bending, frame)
 
 
 def _modes(scene: Scene, count: int, elements: int) -> tuple[np.ndarray, np.ndarray, Frame]:
@@ -131,14 +134,12 @@ def _modes(scene: Scene, count: int, elements: int) -> tuple[np.ndarray, np.ndar
         whole = sparse.coo_matrix((parts.ravel(), (rows, columns)), shape=(frame.size,) * 2).tocsr()
         return (whole + sparse.diags(diagonal))[free][:, free].tocsc()
 
-    squares, vectors = eigsh(
-        assembled(stiffness, frame.springs),
-        k=count,
-        M=assembled(mass.matrices, mass.nodal),
-        sigma=0.0,
-        v0=np.ones(free.size),
-    )
+    stiff, inert = assembled(stiffness, frame.springs), assembled(mass.matrices, mass.nodal)
+    scale = stiff.diagonal().sum() / inert.diagonal().sum()
+    # Looked for from below 0, where there is a factor also if nothing holds the frame.
+    squares, vectors = eigsh(stiff, k=count, M=inert, sigma=-_BELOW * scale, v0=np.ones(free.size))
     order = np.argsort(squares)
+    squares = np.where(squares < _RIGID * scale, 0.0, squares)
     shape = np.zeros((count, frame.size))
     shape[:, free] = (vectors / np.abs(vectors).max(axis=0)).T[order]
     return np.sqrt(squares[order]) / (2.0 * np.pi), shape, frame

@@ -87,6 +87,21 @@ def test_frequencies_with_shear_and_rotatory_inertia(section: str, length: float
     assert bending[1] == pytest.approx(expected[1], rel=2e-2)
 
 
+def test_frequencies_of_a_beam_that_nothing_holds() -> None:
+    """Three movements without deformation, then βL = 4.73004 and 7.85320 of a free beam (any text on vibrations)."""
+    nodes = {"A": (0.0, 0.0, "free"), "B": (3.0, 0.0, "free")}
+    scene = frame_scene(nodes, [("A", "B")], moving(1.0, velocity=[0.0, -1.0]))
+    ratio = math.sqrt(scene.capacity("A-B").EI / scene.members["A-B"].mass_per_length) / (2.0 * math.pi)
+    expected = [ratio * (root / 3.0) ** 2 for root in (4.730040744862704, 7.853204624095838)]
+    found = natural_modes(scene, 8)
+    assert list(found.frequency[:3]) == [0.0, 0.0, 0.0]
+    assert found.frequency[3:][found.bending[3:] > 0.5][:2] == pytest.approx(expected, rel=1e-4)
+    frequencies, shapes = sim.natural_modes(sim.assemble(scene, EIGHT).joints)
+    bending = [f for i, f in enumerate(frequencies) if max(abs(shape[1, i]) for shape in shapes.values()) > 1e-6]
+    assert [f for f in bending if f > 1.0][:2] == pytest.approx(expected, rel=5e-3)
+    assert next(f for f in bending if f > 1.0) == pytest.approx(expected[0], rel=1e-3)
+
+
 def test_a_mode_vibrates_with_its_frequency() -> None:
     """Let go with the velocities of its first mode: 200 steps a period, ten periods; 0.1 % in time and height."""
     scene = beam("rectangle 50x100 mm", 1.0, "free", moving(1.0, velocity=[0.0, -1.0]))

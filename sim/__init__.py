@@ -1,8 +1,9 @@
 """What rigid bodies with ductile joints do: pymunk, and one implicit solve for a whole structure inside its step."""
 
-from sim import chipmunk
+from sim import chipmunk, collision_tree
 
 chipmunk.verify()
+collision_tree.verify()
 
 from sim.energy import Energy, energy  # noqa: E402
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint  # noqa: E402  (nothing may run on structs that do not fit)

@@ -31,12 +31,23 @@ BIAS_VX, BIAS_SPIN = 24, 26
 BODY_SPACE = 27
 ARBITERS, CONSTRAINTS = 29, 30
 BODY_FULL_WORDS = 31
+# How bodies sleep: the first of those that do so together, the next of them, and for how long one has been at rest.
+SLEEP_ROOT, SLEEP_NEXT, IDLE_TIME = 31, 32, 33
+_SLEEP_WORDS = 34
 
-# cpSpace: how much shapes may overlap.
-SPACE_SLOP, SPACE_WORDS = 6, 8
+# cpSpace: how much shapes may overlap; lists of bodies that move, of the first ones of those that sleep, of constraints
+# and of arbiters; the trees of shapes, static ones first.
+SPACE_SLOP = 6
+MOVING_BODIES, SLEEPING_ROOTS, CONSTRAINTS_OF_SPACE, ARBITERS_OF_SPACE = 12, 15, 19, 20
+SPACE_SHAPES, SPACE_WORDS = 17, 21
+# Between them, for `verify` alone: how many steps there were, and how many shapes.
+_SPACE_STAMP, _SPACE_SHAPE_COUNTER = 10, 16
+# cpArray: how many, as half a word; where they are.
+_COUNT, _ITEMS, _LIST_WORDS = 0, 1, 2
 
 # cpArbiter: the contacts between two shapes.
 ARBITER_FRICTION, ARBITER_SURFACE = 1, 2
+ARBITER_SHAPE_A, ARBITER_SHAPE_B = 5, 6
 ARBITER_BODY_A, ARBITER_BODY_B = 7, 8
 ARBITER_NEXT_A, ARBITER_NEXT_B = 9, 11
 ARBITER_COUNT, ARBITER_CONTACTS, ARBITER_NORMAL = 13, 14, 15
@@ -138,15 +149,52 @@ def overlap(one: pymunk.Shape, other: pymunk.Shape) -> bool:
 
 
 def save_body(body: pymunk.Body) -> np.ndarray:
-    """A body's numbers to the last bit, with those that pymunk does not save: transform and pseudo-velocities."""
-    raw = words(body_address(body), BODY_FULL_WORDS)
-    return np.concatenate([raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1]])
+    """A body's numbers to the last bit, with those that pymunk does not save.
+
+    These are its transform, its pseudo-velocities, and for how long it has been at rest.
+    """
+    raw = words(body_address(body), _SLEEP_WORDS)
+    return np.concatenate([raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1], raw[[IDLE_TIME]]])
 
 
 def restore_body(body: pymunk.Body, saved: np.ndarray) -> None:
     """Put back what `save_body` gave."""
-    raw = words(body_address(body), BODY_FULL_WORDS)
-    raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1] = saved[: BODY_WORDS - MASS], saved[BODY_WORDS - MASS :]
+    raw = words(body_address(body), _SLEEP_WORDS)
+    raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1] = saved[: BODY_WORDS - MASS], saved[BODY_WORDS - MASS : -1]
+    raw[IDLE_TIME] = saved[-1]
+
+
+def listed(space: pymunk.Space, which: int) -> np.ndarray:
+    """Addresses in one of a space's lists, in order, to be changed in place."""
+    head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), _LIST_WORDS, np.int64)
+    count = int(head[_COUNT]) & 0xFFFFFFFF
+    return words(int(head[_ITEMS]), count, np.int64) if count else np.zeros(0, dtype=np.int64)
+
+
+def list_anew(space: pymunk.Space, which: int, order: list[int]) -> None:
+    """Put one of a space's lists into another order, or leave out some of it."""
+    listed(space, which)[: len(order)] = order
+    head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), _LIST_WORDS, np.int32)
+    head[_COUNT] = len(order)
+
+
+def sleeping_groups(space: pymunk.Space) -> list[list[int]]:
+    """Addresses of the bodies that sleep, by those that do so together, the first one first."""
+    groups = []
+    for root in listed(space, SLEEPING_ROOTS).tolist():
+        group, body = [], root
+        while body:
+            group.append(body)
+            body = int(words(body, _SLEEP_WORDS, np.int64)[SLEEP_NEXT])
+        groups.append(group)
+    return groups
+
+
+def wake_all(space: object) -> None:
+    """Wake all bodies of a cpSpace."""
+    roots = words(int(words(address(space), SPACE_WORDS, np.int64)[SLEEPING_ROOTS]), _LIST_WORDS, np.int64)
+    while int(roots[_COUNT]) & 0xFFFFFFFF:
+        lib.cpBodyActivate(ffi.cast("cpBody *", int(words(int(roots[_ITEMS]), 1, np.int64)[0])))
 
 
 def cached_impulse(constraint: pymunk.Constraint) -> np.ndarray:
@@ -185,6 +233,10 @@ def verify() -> None:
     space.add(body, other, joint)
     fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[BODY_SPACE] == address(space._space)
     fits &= words(address(space._space), SPACE_WORDS)[SPACE_SLOP] == 43.0
+    lib.cpSpaceSetTimestamp(space._space, 53)
+    lib.cpSpaceSetShapeIDCounter(space._space, 59)
+    numbers = words(address(space._space), SPACE_WORDS, np.int64)
+    fits &= numbers[_SPACE_STAMP] & 0xFFFFFFFF == 53 and numbers[_SPACE_SHAPE_COUNTER] == 59
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == address(space._space)
     fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[CONSTRAINTS] == location
     second = pymunk.PivotJoint(other, body, (0.0, 0.0))
@@ -195,16 +247,49 @@ def verify() -> None:
     space.remove(joint)
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == 0
     fits &= bodies[CONSTRAINT_BODY_A] == body_address(body) and bodies[_BODY_B] == body_address(other)
-    fits &= _offsets("cpArbiter", e=0, n=ARBITER_NORMAL, state=ARBITER_STATE, contacts=ARBITER_CONTACTS)
+    fits &= _offsets("cpArbiter", e=0, a=ARBITER_SHAPE_A, n=ARBITER_NORMAL, state=ARBITER_STATE)
+    fits &= _offsets("cpArbiter", thread_a=ARBITER_NEXT_A, thread_b=ARBITER_NEXT_B, contacts=ARBITER_CONTACTS)
     fits &= _offsets("struct cpContact", r2=CONTACT_R2, jnAcc=CONTACT_NORMAL_IMPULSE, hash=CONTACT_HASH)
     for constraint in _one_of_each(body, other):
         cached_impulse(constraint)[:] = 47.0
         fits &= abs(constraint.impulse - math.hypot(*cached_impulse(constraint))) <= 1e-12
+    check(fits and _lists_fit())
+
+
+def check(fits: bool) -> None:
+    """Refuse the installed pymunk unless it fits.
+
+    Raises
+    ------
+    IncompatiblePymunk
+        The message names the versions that work.
+    """
     if not fits:
         raise IncompatiblePymunk(
             f"pymunk {pymunk.version} lays out its bodies or constraints in a way that sim does not know; "
             f"install version {KNOWN_VERSIONS}: pip install 'pymunk>=7.3,<7.4'"
         )
+
+
+def _lists_fit() -> bool:
+    """Whether a space's lists hold what they should, awake and asleep."""
+    space, bodies = pymunk.Space(), [pymunk.Body(1.0, 1.0) for _ in range(2)]
+    joint = pymunk.PivotJoint(bodies[0], bodies[1], (0.0, 0.0))
+    space.add(*bodies, joint, *(pymunk.Circle(body, 1.0) for body in bodies))
+    space.sleep_time_threshold = 1.0
+    addresses = [body_address(body) for body in bodies]
+    fits = listed(space, MOVING_BODIES).tolist() == addresses
+    fits &= listed(space, CONSTRAINTS_OF_SPACE).tolist() == [address(joint._constraint)]
+    joint.collide_bodies = True
+    space.step(0.5)
+    arbiter = int(words(addresses[0], BODY_FULL_WORDS, np.int64)[ARBITERS])
+    fits &= listed(space, ARBITERS_OF_SPACE).tolist() == [arbiter]
+    fits &= words(addresses[0], _SLEEP_WORDS)[IDLE_TIME] == 0.5
+    bodies[0].sleep()
+    bodies[1].sleep_with_group(bodies[0])
+    fits &= sleeping_groups(space) == [addresses] and len(listed(space, MOVING_BODIES)) == 0
+    wake_all(space._space)
+    return fits and sorted(listed(space, MOVING_BODIES).tolist()) == sorted(addresses)
 
 
 def _offsets(struct: str, **words: int) -> bool:

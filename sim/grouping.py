@@ -6,6 +6,7 @@ import pymunk
 
 from capacity import InputError
 from sim.joint import DuctileJoint
+from sim.space_state import look_after
 from sim.structure import Structure, raise_after_step
 
 
@@ -24,6 +25,7 @@ def group(constraint: pymunk.Constraint, space: pymunk.Space) -> None:
 
 
 def _group(space: pymunk.Space) -> None:
+    look_after(space)
     joints = [c for c in space.constraints if isinstance(c, DuctileJoint) and not c.broken]
     parent: dict[pymunk.Body, pymunk.Body] = {}
 

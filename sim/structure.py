@@ -16,7 +16,7 @@ from sim.laws import Law
 from sim.notices import listen
 from sim.ordering import minimum_degree
 from sim.readings import Readings
-from sim.space_state import SpaceState
+from sim.space_state import look_after
 from sim.tables import Tables
 
 _TOLERANCE = 1e-9
@@ -84,6 +84,8 @@ class Structure(Readings):
         pairs = [(index[j.a], index[j.b]) for j in self.joints if j.a in index and j.b in index]
         pattern = minimum_degree(len(moving), pairs)
         self.bodies = tuple([moving[i] for i in pattern.order] + held)
+        for space in {body.space for body in bodies if body.space is not None}:
+            look_after(space)
         self.tables = Tables(joints, self.bodies, pattern, tolerance)
         self._control = self.tables.control
         self._control[[at.NOTICE, at.KEY]] = listen(self)
@@ -136,12 +138,11 @@ class Structure(Readings):
         return self.tables[at.START_VELOCITY]
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is needed to go on from here: joints, and what they and their space do not say."""
+        """What is needed to go on from here: joints, and what they and their space (`SpaceState`) do not say."""
         return {
             "joints": self.joints,
             "tolerance": self.tolerance,
             "kept": self.tables.kept(),
-            "space": SpaceState.of(self.bodies),
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -159,7 +160,6 @@ class Structure(Readings):
         if state is None or self._restored < len(state["joints"]):
             return
         del self._saved, self._restored
-        state["space"].restore()
         self._build(tuple(state["joints"]), state["tolerance"])
         self.tables.restore(state["kept"])
         for i, joint in enumerate(self.joints):

@@ -1,0 +1,309 @@
+"""Chipmunk's two trees of shapes, one for what moves and one for what does not: read, and put back.
+
+A tree's inner order follows from all it has been through. By it Chipmunk comes upon pairs of shapes in one order or
+another, and its solver takes contacts in that order; where each search for the nearest features begins is kept in the
+pairs, too. So a run goes on to the last bit only where both trees are what they were. Here they are numbers that
+know shapes by their place in a list, and hold no address.
+
+Offsets are in 8-byte words, as in `sim.chipmunk`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pymunk
+
+from sim.chipmunk import SPACE_SHAPES, SPACE_WORDS, address, check, words
+
+# cpBBTree: its kind, the set of its leaves, root, pools and counter of changes.
+_KIND, _LEAVES, _ROOT, _PAIR_POOL, _STAMP, _TREE_WORDS = 0, 5, 6, 8, 10, 11
+# Node: shape (none within the tree), box, node above; two below, or of a leaf when it last changed and its pairs.
+_SHAPE, _BOX, _ABOVE, _FIRST, _SECOND, _NODE_WORDS = 0, slice(1, 5), 5, 6, 7, 8
+_CHANGED, _PAIRS = _FIRST, _SECOND
+# Pair: for each of its two leaves the pair before in that leaf's list, the leaf, and the pair after; then the features
+# that were nearest.
+_BEFORE, _LEAF, _AFTER, _FEATURES, _PAIR_WORDS = (0, 3), (1, 4), (2, 5), 6, 7
+# cpHashSet: how many it holds and how many lists there are, half a word each; the lists. Bin: what it holds, by which
+# number, and the bin after.
+_SIZES, _TABLE, _SET_WORDS = 0, 3, 5
+_HELD, _HASH, _NEXT, _BIN_WORDS = 0, 1, 2, 3
+_HALF = 0xFFFFFFFF
+
+
+@dataclass(frozen=True)
+class _Tree:
+    """One tree; shapes by their place in the list.
+
+    Attributes
+    ----------
+    stamp : int
+    lists : int
+        Of the set of leaves.
+    leaves : list of int
+        In the order in which Chipmunk goes through the set.
+    nodes : list of int
+        From the root on, first branches first; -1 within the tree.
+    boxes : (n, 4) float
+        Of the nodes.
+    """
+
+    stamp: int
+    lists: int
+    leaves: list[int]
+    nodes: list[int]
+    boxes: np.ndarray
+
+
+@dataclass(frozen=True)
+class CollisionTrees:
+    """Both trees of a space, the pairs of shapes that are near each other, and the numbers that shapes are known by.
+
+    Attributes
+    ----------
+    trees : (static, dynamic)
+    numbers : list of int
+        Chipmunk's number of each shape.
+    changed : list of int
+        When each shape's leaf last changed.
+    pairs : list of (first, second, features)
+        Places of two shapes, and of the features that were nearest.
+    near : list of list of int
+        Pairs of each shape, in their order.
+    """
+
+    trees: tuple[_Tree, _Tree]
+    numbers: list[int]
+    changed: list[int]
+    pairs: list[tuple[int, int, int]]
+    near: list[list[int]]
+
+    @classmethod
+    def of(cls, space: pymunk.Space, shapes: Sequence[pymunk.Shape]) -> CollisionTrees | None:
+        """Those of ``space``, whose shapes are all listed; None when it uses a spatial hash."""
+        at = _tree_addresses(space)
+        if any(_word(tree, _KIND) != _tree_kind() for tree in at):
+            return None
+        place = {_shape_address(shape): i for i, shape in enumerate(shapes)}
+        leaves = {place[_word(leaf, _SHAPE)]: leaf for tree in at for leaf in _leaves(tree)}
+        pairs: dict[int, int] = {}
+        near = [[pairs.setdefault(p, len(pairs)) for p in _pairs_of(leaves[i])] for i in range(len(shapes))]
+        return cls(
+            (_read_tree(at[0], place), _read_tree(at[1], place)),
+            [shape._hashid for shape in shapes],
+            [_word(leaves[i], _CHANGED) & _HALF for i in range(len(shapes))],
+            [_read_pair(pair, place) for pair in pairs],
+            near,
+        )
+
+    def restore(self, space: pymunk.Space, shapes: Sequence[pymunk.Shape]) -> None:
+        """Put them back to a space with the same shapes, each in the tree that it was in."""
+        self._make_room(space)
+        at = _tree_addresses(space)
+        leaves = {_word(leaf, _SHAPE): leaf for tree in at for leaf in _leaves(tree)}
+        leaf_of = [leaves[_shape_address(shape)] for shape in shapes]
+        free = self._free_pairs(at, leaf_of)
+        for shape, number in zip(shapes, self.numbers, strict=True):
+            shape._hashid = number
+        for tree, saved in zip(at, self.trees, strict=True):
+            _write_set(tree, saved, [leaf_of[i] for i in saved.leaves], [self.numbers[i] for i in saved.leaves])
+            _write_tree(tree, saved, leaf_of)
+        for leaf, changed in zip(leaf_of, self.changed, strict=True):
+            words(leaf, _NODE_WORDS, np.int64)[_CHANGED] = changed
+        self._write_pairs(leaf_of, free[: len(self.pairs)])
+        pool = 0
+        for pair in free[len(self.pairs) :]:
+            words(pair, _PAIR_WORDS, np.int64)[_AFTER[0]] = pool
+            pool = pair
+        words(at[1], _TREE_WORDS, np.int64)[_PAIR_POOL] = pool
+
+    def _make_room(self, space: pymunk.Space) -> None:
+        """Have Chipmunk allocate what is lacking, by shapes in one place that are added and taken out again."""
+        at = _tree_addresses(space)
+        for tree, saved, kind in zip(at, self.trees, (pymunk.Body.STATIC, pymunk.Body.KINEMATIC), strict=True):
+            lists = _word(_word(tree, _LEAVES), _SIZES) >> 32
+            lacking = saved.lists - sum(1 for _ in _leaves(tree)) if lists < saved.lists else 0
+            if kind == pymunk.Body.KINEMATIC:
+                # As many as pair with each other often enough.
+                lacking = max(lacking, 2 + int((2.0 * len(self.pairs)) ** 0.5))
+            body = pymunk.Body(body_type=kind)
+            circles = [pymunk.Circle(body, 1.0) for _ in range(lacking)]
+            space.add(body, *circles)
+            space.remove(*circles, body)
+
+    def _free_pairs(self, at: tuple[int, int], leaf_of: Sequence[int]) -> list[int]:
+        """Addresses of all pairs that there are, in use or not."""
+        found = dict.fromkeys(pair for leaf in leaf_of for pair in _pairs_of(leaf))
+        pair = _word(at[1], _PAIR_POOL)
+        while pair:
+            found[pair] = None
+            pair = _word(pair, _AFTER[0])
+        return list(found)
+
+    def _write_pairs(self, leaf_of: Sequence[int], where: Sequence[int]) -> None:
+        for pair, (first, second, features) in zip(where, self.pairs, strict=True):
+            w = words(pair, _PAIR_WORDS, np.int64)
+            w[:] = 0
+            w[_LEAF[0]], w[_LEAF[1]], w[_FEATURES] = leaf_of[first], leaf_of[second], features
+        for leaf, listed in zip(leaf_of, self.near, strict=True):
+            chain = [where[k] for k in listed]
+            words(leaf, _NODE_WORDS, np.int64)[_PAIRS] = chain[0] if chain else 0
+            for before, pair, after in zip([0, *chain], chain, [*chain[1:], 0], strict=False):
+                w = words(pair, _PAIR_WORDS, np.int64)
+                side = 0 if w[_LEAF[0]] == leaf else 1
+                w[_BEFORE[side]], w[_AFTER[side]] = before, after
+
+
+def verify() -> None:
+    """Check the offsets against the installed pymunk, with two shapes that are near each other and one far away.
+
+    Raises
+    ------
+    IncompatiblePymunk
+        When something is not where it is expected.
+    """
+    space, bodies = pymunk.Space(), [pymunk.Body(1.0, 1.0) for _ in range(2)]
+    shapes: list[pymunk.Shape] = [pymunk.Poly.create_box(body) for body in bodies]
+    shapes.append(pymunk.Circle(space.static_body, 1.0, (30.0, 30.0)))
+    bodies[1].position, bodies[1].angle = (11.5, 0.0), 0.5
+    space.add(*bodies, *shapes)
+    for _ in range(2):
+        space.step(1.0)
+    found = [
+        {_word(at, _HELD): _word(at, _HASH) for at in _bins(tree)} if _is_whole(tree, count) else {}
+        for tree, count in zip(_tree_addresses(space), (1, 2), strict=True)
+    ]
+    known = {_word(leaf, _SHAPE): number for tree in found for leaf, number in tree.items()}
+    check(known == {_shape_address(shape): shape._hashid for shape in shapes})
+    trees = CollisionTrees.of(space, shapes)
+    check(trees is not None)
+    assert trees is not None
+    check([sorted(pair[:2]) for pair in trees.pairs] == [[0, 1]] and trees.pairs[0][2] > 0)
+    check(trees.near == [[0], [0], []] and [tree.nodes[0] for tree in trees.trees] == [2, -1])
+    check(all(tree.boxes[0, 0] < tree.boxes[0, 2] for tree in trees.trees))
+
+
+def _is_whole(tree: int, count: int) -> bool:
+    """Whether there is a set of so many leaves where there should be."""
+    held = _word(tree, _LEAVES)
+    if not 1 << 16 < held < 1 << 47 or held % 8:
+        return False
+    sizes = _word(held, _SIZES)
+    return sizes & _HALF == count and count <= sizes >> 32 < 1000
+
+
+def _tree_kind() -> int:
+    return _word(_tree_addresses(_REFERENCE)[0], _KIND)
+
+
+#: A space that is never anything but new.
+_REFERENCE = pymunk.Space()
+
+
+def _tree_addresses(space: pymunk.Space) -> tuple[int, int]:
+    w = words(address(space._space), SPACE_WORDS, np.int64)
+    return int(w[SPACE_SHAPES]), int(w[SPACE_SHAPES + 1])
+
+
+def _shape_address(shape: pymunk.Shape) -> int:
+    return address(shape._shape)
+
+
+def _word(location: int, word: int) -> int:
+    return int(words(location, word + 1, np.int64)[word])
+
+
+def _bins(tree: int) -> list[int]:
+    """Bins of a tree's set of leaves, in the order in which Chipmunk goes through them."""
+    found, held = [], _word(tree, _LEAVES)
+    for first in words(_word(held, _TABLE), _word(held, _SIZES) >> 32, np.int64).tolist():
+        at = first
+        while at:
+            found.append(at)
+            at = _word(at, _NEXT)
+    return found
+
+
+def _leaves(tree: int) -> list[int]:
+    return [_word(at, _HELD) for at in _bins(tree)]
+
+
+def _pairs_of(leaf: int) -> list[int]:
+    found, pair = [], _word(leaf, _PAIRS)
+    while pair:
+        found.append(pair)
+        w = words(pair, _PAIR_WORDS, np.int64)
+        pair = int(w[_AFTER[0 if w[_LEAF[0]] == leaf else 1]])
+    return found
+
+
+def _read_pair(pair: int, place: dict[int, int]) -> tuple[int, int, int]:
+    w = words(pair, _PAIR_WORDS, np.int64)
+    first, second = (place[_word(int(w[leaf]), _SHAPE)] for leaf in _LEAF)
+    return first, second, int(w[_FEATURES]) & _HALF
+
+
+def _nodes(tree: int) -> list[int]:
+    """Nodes from the root on, first branches first."""
+    found, left = [], [_word(tree, _ROOT)]
+    while left:
+        node = left.pop()
+        if node:
+            found.append(node)
+            if _word(node, _SHAPE) == 0:
+                left += [_word(node, _SECOND), _word(node, _FIRST)]
+    return found
+
+
+def _read_tree(tree: int, place: dict[int, int]) -> _Tree:
+    nodes = _nodes(tree)
+    boxes = [words(node, _NODE_WORDS)[_BOX].copy() for node in nodes]
+    return _Tree(
+        _word(tree, _STAMP) & _HALF,
+        _word(_word(tree, _LEAVES), _SIZES) >> 32,
+        [place[_word(leaf, _SHAPE)] for leaf in _leaves(tree)],
+        [place.get(_word(node, _SHAPE), -1) for node in nodes],
+        np.array(boxes).reshape(-1, 4),
+    )
+
+
+def _write_set(tree: int, saved: _Tree, leaves: Sequence[int], numbers: Sequence[int]) -> None:
+    """Put the leaves into as many lists as there were, in their order; Chipmunk may have room for more."""
+    bins, held = _bins(tree), words(_word(tree, _LEAVES), _SET_WORDS, np.int64)
+    held[_SIZES] = len(leaves) | saved.lists << 32
+    table = words(int(held[_TABLE]), saved.lists, np.int64)
+    table[:] = 0
+    last: dict[int, int] = {}
+    for at, leaf, number in zip(bins, leaves, numbers, strict=True):
+        words(at, _BIN_WORDS, np.int64)[:] = leaf, number, 0
+        index = number % saved.lists
+        if index in last:
+            words(last[index], _BIN_WORDS, np.int64)[_NEXT] = at
+        else:
+            table[index] = at
+        last[index] = at
+
+
+def _write_tree(tree: int, saved: _Tree, leaf_of: Sequence[int]) -> None:
+    """Link the nodes anew."""
+    inner = [node for node in _nodes(tree) if _word(node, _SHAPE) == 0]
+    nodes = [leaf_of[i] if i >= 0 else inner.pop() for i in saved.nodes]
+    # Nodes whose branches are still to come.
+    above: list[int] = []
+    for node, shape, box in zip(nodes, saved.nodes, saved.boxes, strict=True):
+        words(node, _NODE_WORDS)[_BOX] = box
+        w = words(node, _NODE_WORDS, np.int64)
+        w[_ABOVE] = above[-1] if above else 0
+        if above:
+            parent = words(above[-1], _NODE_WORDS, np.int64)
+            if parent[_FIRST] == 0:
+                parent[_FIRST] = node
+            else:
+                parent[_SECOND] = node
+                above.pop()
+        if shape < 0:
+            w[_FIRST], w[_SECOND] = 0, 0
+            above.append(node)
+    words(tree, _TREE_WORDS, np.int64)[[_ROOT, _STAMP]] = nodes[0] if nodes else 0, saved.stamp

@@ -8,10 +8,12 @@ its own setters, once, when `sim` is imported.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
+from pymunk.arbiter import _arbiter_from_dict, _arbiter_to_dict
 
 #: pymunk versions that the offsets were taken from.
 KNOWN_VERSIONS = "7.3"
@@ -21,8 +23,10 @@ MASS, MASS_INVERSE = 2, 3
 MOMENT, MOMENT_INVERSE = 4, 5
 X, Y = 8, 9
 VX, VY = 10, 11
+FORCE_X, FORCE_Y = 12, 13
 ANGLE = 14
 SPIN = 15
+TORQUE = 16
 # The body's transform: cos, sin, -sin, cos of the angle, and where its own origin is.
 COSINE, SINE, MINUS_SINE, COSINE_AGAIN, ORIGIN = 17, 18, 19, 20, 21
 CENTRE = 6
@@ -178,6 +182,28 @@ def list_anew(space: pymunk.Space, which: int, order: list[int]) -> None:
     head[_COUNT] = len(order)
 
 
+def shape_at(location: int) -> pymunk.Shape:
+    """The shape whose struct lies at an address."""
+    shape = pymunk.Shape._from_cp_shape(ffi.cast("cpShape *", location))
+    assert shape is not None
+    return shape
+
+
+def arbiters_known(space: pymunk.Space) -> list[int]:
+    """Addresses of the arbiters that pymunk saves with a space."""
+    return [address(arbiter) for arbiter in space._get_arbiters()]
+
+
+def save_arbiter(location: int, space: pymunk.Space) -> dict[str, Any]:
+    """An arbiter as pymunk saves it."""
+    return _arbiter_to_dict(ffi.cast("cpArbiter *", location), space)
+
+
+def add_arbiter(saved: dict[str, Any], space: pymunk.Space) -> None:
+    """Put an arbiter back that `save_arbiter` gave."""
+    lib.cpSpaceAddCachedArbiter(space._space, _arbiter_from_dict(saved, space))
+
+
 def sleeping_groups(space: pymunk.Space) -> list[list[int]]:
     """Addresses of the bodies that sleep, by those that do so together, the first one first."""
     groups = []
@@ -216,8 +242,10 @@ def verify() -> None:
     body.velocity = (13.0, 17.0)
     body.angle = 19.0
     body.angular_velocity = 23.0
+    body.force, body.torque = (61.0, 67.0), 71.0
     field = words(body_address(body), BODY_WORDS)
     expected = {MASS: 3.0, MASS_INVERSE: 1.0 / 3.0, MOMENT: 5.0, MOMENT_INVERSE: 1.0 / 5.0, X: 7.0, Y: 11.0}
+    expected |= {FORCE_X: 61.0, FORCE_Y: 67.0, TORQUE: 71.0}
     expected |= {VX: 13.0, VY: 17.0, ANGLE: 19.0, SPIN: 23.0, COSINE: math.cos(19.0), SINE: math.sin(19.0)}
     expected |= {MINUS_SINE: -math.sin(19.0), COSINE_AGAIN: math.cos(19.0), ORIGIN: 7.0, ORIGIN + 1: 11.0, CENTRE: 0.0}
     fits = all(abs(field[word] - value) <= 1e-12 for word, value in expected.items())

@@ -6,14 +6,12 @@ step: only those start the next one with the impulses they bear.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pymunk
-from pymunk._chipmunk_cffi import ffi, lib
-from pymunk.arbiter import _arbiter_from_dict, _arbiter_to_dict
 
 from sim.chipmunk import (
     ARBITER_BODY_A,
@@ -25,9 +23,12 @@ from sim.chipmunk import (
     ARBITERS,
     ARBITERS_OF_SPACE,
     BODY_FULL_WORDS,
+    add_arbiter,
     address,
+    arbiters_known,
     body_address,
     listed,
+    save_arbiter,
     words,
 )
 
@@ -58,28 +59,21 @@ class ContactGraph:
         """That of ``space`` between two steps."""
         place = {address(shape._shape): i for i, shape in enumerate(shapes)}
 
-        def pair(arbiter: int) -> _Pair:
-            w = words(arbiter, ARBITER_WORDS, np.int64)
-            return place[int(w[ARBITER_SHAPE_A])], place[int(w[ARBITER_SHAPE_B])]
-
-        seen = {address(arbiter) for arbiter in space._get_arbiters()}
-        known = [_arbiters_of(body) for body in bodies]
+        seen = set(arbiters_known(space))
+        known = [arbiters_of(body) for body in bodies]
         unseen = dict.fromkeys(arbiter for one in known for arbiter in one if arbiter not in seen)
         return cls(
-            [pair(arbiter) for arbiter in listed(space, ARBITERS_OF_SPACE).tolist()],
-            [[pair(arbiter) for arbiter in one] for one in known],
-            [_arbiter_to_dict(ffi.cast("cpArbiter *", arbiter), space) for arbiter in unseen],
+            [_pair(arbiter, place) for arbiter in listed(space, ARBITERS_OF_SPACE).tolist()],
+            [[_pair(arbiter, place) for arbiter in one] for one in known],
+            [save_arbiter(arbiter, space) for arbiter in unseen],
         )
 
     def restore(self, space: pymunk.Space, bodies: Sequence[pymunk.Body], shapes: Sequence[pymunk.Shape]) -> list[int]:
         """Put it back, nobody sleeping yet; returns the addresses of the arbiters that are ``touching``."""
         for saved in self.asleep:
-            lib.cpSpaceAddCachedArbiter(space._space, _arbiter_from_dict(saved, space))
+            add_arbiter(saved, space)
         place = {address(shape._shape): i for i, shape in enumerate(shapes)}
-        at = {
-            (place[address(arbiter.a)], place[address(arbiter.b)]): address(arbiter)
-            for arbiter in space._get_arbiters()
-        }
+        at = {_pair(arbiter, place): arbiter for arbiter in arbiters_known(space)}
         for body, pairs in zip(bodies, self.of_bodies, strict=True):
             chain = [at[pair] for pair in pairs]
             where = body_address(body)
@@ -91,7 +85,13 @@ class ContactGraph:
         return [at[pair] for pair in self.touching]
 
 
-def _arbiters_of(body: pymunk.Body) -> list[int]:
+def _pair(arbiter: int, place: Mapping[int, int]) -> _Pair:
+    w = words(arbiter, ARBITER_WORDS, np.int64)
+    return place[int(w[ARBITER_SHAPE_A])], place[int(w[ARBITER_SHAPE_B])]
+
+
+def arbiters_of(body: pymunk.Body) -> list[int]:
+    """Addresses of a body's arbiters, in their order."""
     where = body_address(body)
     found, arbiter = [], int(words(where, BODY_FULL_WORDS, np.int64)[ARBITERS])
     while arbiter:

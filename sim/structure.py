@@ -10,6 +10,7 @@ import pymunk
 
 from capacity import InputError
 from sim import chipmunk
+from sim.far_side import turn_round
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
 from sim.laws import Law
@@ -17,6 +18,7 @@ from sim.notices import listen
 from sim.ordering import minimum_degree
 from sim.readings import Readings
 from sim.space_state import look_after
+from sim.step_back import StepBack, cause
 from sim.tables import Tables
 
 _TOLERANCE = 1e-9
@@ -60,6 +62,8 @@ class Structure(Readings):
     # While it is restored: what was saved, and how many joints are back.
     _saved: dict[str, Any] | None = None
     _restored = 0
+    # In a step that cannot be taken: why, and how the space was before.
+    _refusal: tuple[str, StepBack | None] = "", None
 
     def __init__(
         self, joints: Sequence[DuctileJoint], tolerance: float = _TOLERANCE, after: Structure | None = None
@@ -227,15 +231,23 @@ class Structure(Readings):
         """Something happened in a step that the space has not left yet; called by the kernels."""
         fault = int(self._control[at.FAULT])
         if fault >= 0:
-            self._control[at.FAULT] = -1
             joint = self.joints[fault]
+            if self._control[at.LEADER]:
+                self._refusal = cause((joint.a, joint.b), self.step), self._step_back(_space_of(joint))
+                return
+            self._control[at.FAULT] = -1
+            (why, back), self._refusal = self._refusal, ("", None)
             x, y = joint.at
-            error = SolverError(
-                f"the step was refused: the impulse of joint {fault} (made at {x:g}, {y:g}) is not finite; look for a "
-                "body that was moved or pushed without bound, or take a shorter step or a lower stiffness"
-            )
-            raise_after_step(_space_of(joint), error)
+            place = f"the impulse of joint {fault} (made at {x:g}, {y:g}) is not finite" + (f": {why}" if why else "")
+            cure = "look for a body that was moved or pushed without bound, or take a shorter step or a lower stiffness"
+            error = SolverError(f"the step was refused: {place}; {cure}")
+            raise_after_step(_space_of(joint), error, back)
             return
+        if self._control[at.PARTS] > 1 and not self._control[at.COPY]:
+            self.tables.make_copy()
+            return
+        if self._control[at.ASTRAY] > 0:
+            turn_round(self.bodies[: int(self._control[at.MOVING])], self.step)
         if self._control[at.MISSED] > 0:
             self.tables.make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
         if self._control[at.BROKE] == 0:
@@ -250,6 +262,21 @@ class Structure(Readings):
             elif joint.structure is self:
                 joint.ask_for_structure()
 
+    def _step_back(self, space: pymunk.Space) -> StepBack:
+        """Have all structures of the space refuse the step that has just begun, and note how all else is."""
+        structures = {joint.structure for joint in space.constraints if isinstance(joint, DuctileJoint)}
+        own: set[int] = set()
+        pushes: dict[int, np.ndarray] = {}
+        for structure in structures:
+            if structure is not None and not structure.bodies[0].is_sleeping:
+                if structure is not self:
+                    structure._control[at.FAULT] = at.WITH_OTHERS
+                moving = int(structure._control[at.MOVING])
+                own.update(structure.tables[at.BODY_AT][:moving].tolist())
+                pushed = structure.tables[at.PUSHES][: structure._control[at.PUSHED]]
+                pushes |= zip(pushed[:, 0].view(np.int64).tolist(), pushed[:, 1:].copy(), strict=True)
+        return StepBack(space, self.step, own, pushes)
+
 
 def _space_of(joint: DuctileJoint) -> pymunk.Space:
     body = joint.a if joint.a.body_type == pymunk.Body.DYNAMIC else joint.b
@@ -257,13 +284,15 @@ def _space_of(joint: DuctileJoint) -> pymunk.Space:
     return body.space
 
 
-def raise_after_step(space: pymunk.Space, error: Exception) -> None:
-    """Have ``space`` raise ``error`` at the end of the step that it is in."""
+def raise_after_step(space: pymunk.Space, error: Exception, back: StepBack | None = None) -> None:
+    """Have ``space`` raise ``error`` at the end of the step that it is in, put back to before it."""
     pending = [error]
 
     def fail(space: pymunk.Space, key: object) -> None:  # noqa: ARG001
         # pymunk does not forget a callback that raises.
         if pending:
+            if back is not None:
+                back.go()
             raise pending.pop()
 
     space.add_post_step_callback(fail, object())

@@ -10,7 +10,8 @@ import pymunk
 from sim import chipmunk
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
-from sim.kernels.contacts import hash_table
+from sim.kernels.owners import hash_table
+from sim.kernels.refusal import words_to_copy
 from sim.ordering import Pattern
 
 # Points of contact that a new structure has room for; more is made when needed.
@@ -115,7 +116,10 @@ class Tables:
     def make_room(self, contacts: int) -> None:
         """Memory for so many points of contact."""
         places = np.zeros((contacts, at.PLACE_WORDS), dtype=np.int64)
-        self._hold({at.PLACES: places, at.TOUCHES: np.zeros((contacts, at.TOUCH_WORDS))})
+        pushes = np.zeros((contacts, 4))
+        if self.control[at.PUSHED]:
+            pushes[: len(self[at.PUSHES])] = self[at.PUSHES]
+        self._hold({at.PLACES: places, at.TOUCHES: np.zeros((contacts, at.TOUCH_WORDS)), at.PUSHES: pushes})
         self.control[at.ROOM] = contacts
 
     def make_pattern(self) -> None:
@@ -124,6 +128,11 @@ class Tables:
             shape = (int(self.control[at.BODIES]), 3)
             self._hold({at.PATTERN: np.zeros(shape), at.IMAGE: np.zeros(shape)})
             self.control[at.SPREAD] = 1
+
+    def make_copy(self) -> None:
+        """Memory for what a step that is taken in parts may have to give back."""
+        joints, bodies = int(self.control[at.JOINTS]), int(self.control[at.BODIES])
+        self._hold({at.COPY: np.zeros(words_to_copy(joints, bodies, len(self._states)))})
 
     def parameters(self, joint: int) -> np.ndarray:
         """Parameters of a joint's law, to be changed in place."""
@@ -155,8 +164,8 @@ class Tables:
 
 # The plastic state is kept beside these. Gradient and response of the last step weigh the bodies of the next.
 _OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.GRADIENT, at.RESPONSE, at.RESULT)
-_KEPT = (*_OF_JOINTS, at.SETTINGS, at.LEDGER, at.LAST_VELOCITY, at.LAST_POSITION, at.SHIFT)
-_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.SHIFTED, at.ROOM)
+_KEPT = (*_OF_JOINTS, at.SETTINGS, at.LEDGER, at.LAST_VELOCITY, at.LAST_POSITION, at.BEGUN_AT, at.SHIFT)
+_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.SHIFTED, at.PARTS, at.ROOM)
 
 
 # A cache line in words of 8 bytes, and how many lines of distance keep arrays of equal length from lying alike in their

@@ -23,7 +23,6 @@ from sim.chipmunk import BODY_FULL_WORDS, BODY_WORDS, CONSTRAINTS, MASS_INVERSE
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.complement import relative
-from sim.kernels.contacts import own_velocity
 from sim.kernels.layout import (
     BLOW,
     BODY_A,
@@ -37,6 +36,7 @@ from sim.kernels.layout import (
     STRIKE,
     WHOLE_STEP,
 )
+from sim.kernels.rows import own_velocity
 from sim.memory import floats, integers, kernel
 
 #: Longest part of a step while a blow lasts [s].

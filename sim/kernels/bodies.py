@@ -12,10 +12,15 @@ from sim.chipmunk import (
     CENTRE,
     COSINE,
     COSINE_AGAIN,
+    FORCE_X,
+    FORCE_Y,
+    MASS_INVERSE,
     MINUS_SINE,
+    MOMENT_INVERSE,
     ORIGIN,
     SINE,
     SPIN,
+    TORQUE,
     VX,
     X,
 )
@@ -45,6 +50,14 @@ def move(body, x, y, turn):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def put(body, x, y, angle):  # type: ignore[no-untyped-def]
+    """Put a body to a place, to the last bit."""
+    b = floats(body, BODY_WORDS)
+    b[X], b[X + 1], b[ANGLE] = x, y, angle
+    move(body, 0.0, 0.0, 0.0)
+
+
+@kernel
 def load_velocities(t, velocity):  # type: ignore[no-untyped-def]
     """Copy the bodies' velocities into ``velocity``."""
     body_at = views.body_at(t)
@@ -62,12 +75,14 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
     the impulse acts when the forces do.
 
     Movement since the last step that velocities do not explain is to take out overlap, or by hand. Returns the fastest
-    spin of those that move, and whether any touches something.
+    spin of those that move, whether any touches something, and a number that is finite if all are where they may be and
+    forces lead none beyond all bounds.
     """
     body_at, shift, moving = views.body_at(t), views.shift(t), t[at.MOVING]
     start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
     position, velocity, weight = views.per_body(t, at.LAST_POSITION), views.per_body(t, at.VELOCITY), views.weight(t)
     fastest, touching, pushed, shifted = 0.0, False, t[at.SHIFTED] == 1, False
+    bounded = 0.0
     for i in range(t[at.BODIES]):
         b = floats(body_at[i], BODY_WORDS)
         if i < moving:
@@ -75,6 +90,7 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
             if x != 0.0 or y != 0.0 or w != 0.0:
                 move(body_at[i], -h * x, -h * y, -h * w)
             fastest = max(fastest, abs(b[SPIN]))
+            bounded += reached(b, h)
             weigh(weight, i, b)
             touching = touching or integers(body_at[i], BODY_FULL_WORDS)[ARBITERS] != 0
         for axis in range(3):
@@ -92,7 +108,15 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
             if abs(rest) > _UNMOVED * (1.0 + abs(place)):
                 shift[i, 3 + axis], shifted = rest, True
     t[at.SHIFTED] = 1 if shifted else 0
-    return fastest, touching
+    return fastest, touching, bounded
+
+
+@kernel
+def reached(b, h):  # type: ignore[no-untyped-def]
+    """Twice the kinetic energy of a body's struct after a step ``h`` of its forces [J]; finite if its place is, too."""
+    x, y = b[VX] + h * b[FORCE_X] * b[MASS_INVERSE], b[VX + 1] + h * b[FORCE_Y] * b[MASS_INVERSE]
+    w = b[SPIN] + h * b[TORQUE] * b[MOMENT_INVERSE]
+    return mass_of(b) * (x * x + y * y) + moment_of(b) * w * w + 0.0 * (b[X] + b[X + 1] + b[ANGLE])
 
 
 @kernel

@@ -31,7 +31,6 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import factorise_matrix, solve
-from sim.kernels.contacts import add_row, direction, other_velocity, own_velocity, push_loose
 from sim.kernels.kinematics import rates
 from sim.kernels.layout import (
     BODY_A,
@@ -53,6 +52,7 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.residual import advance, linearise, reach_of
+from sim.kernels.rows import add_row, direction, other_velocity, own_velocity, push_loose
 from sim.memory import clear, floats, kernel
 
 _SWEEPS = 200

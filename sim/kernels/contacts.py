@@ -11,8 +11,6 @@ which Chipmunk finds them depends on what its collision tree has been through.
 
 import math
 
-import numpy as np
-
 from sim.chipmunk import (
     ANGLE,
     ARBITER_BODY_A,
@@ -30,12 +28,8 @@ from sim.chipmunk import (
     BODY_FULL_WORDS,
     BODY_SPACE,
     BODY_WORDS,
-    CONSTRAINT_BODY_A,
     CONSTRAINT_CLASS,
-    CONSTRAINT_NEXT_A,
-    CONSTRAINT_NEXT_B,
     CONSTRAINT_WORDS,
-    CONSTRAINTS,
     CONTACT_BIAS,
     CONTACT_BOUNCE,
     CONTACT_BYTES,
@@ -47,10 +41,8 @@ from sim.chipmunk import (
     CONTACT_TANGENT_IMPULSE,
     CONTACT_TANGENT_MASS,
     CONTACT_WORDS,
-    CONTROL,
     FIRST,
     MASS_INVERSE,
-    MOMENT_INVERSE,
     SPACE_SLOP,
     SPACE_WORDS,
     SPIN,
@@ -72,6 +64,7 @@ from sim.kernels.layout import (
     HASH,
     INDEX_A,
     INDEX_B,
+    KEPT,
     LOOSE_AT,
     LOOSE_START,
     NORMAL,
@@ -83,6 +76,8 @@ from sim.kernels.layout import (
     WANTED,
     WHERE,
 )
+from sim.kernels.owners import find, owner_of, unite
+from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, integers, kernel
 
 # Surfaces that turn come apart by a distance that grows with the square of the step, and a contact that was lost would
@@ -93,55 +88,12 @@ SETTLE = 0.5
 
 
 @kernel
-def find(t, body):  # type: ignore[no-untyped-def]
-    """Index of the body at an address in the structure, or -1; open addressing, a power of two long."""
-    length = t[at.HASH_LENGTH]
-    keys, values = integers(t[at.BODY_KEYS], length), integers(t[at.BODY_VALUES], length)
-    slot = ((body >> 4) ^ (body >> 12)) & (length - 1)
-    while keys[slot] != 0:
-        if keys[slot] == body:
-            return values[slot]
-        slot = (slot + 1) & (length - 1)
-    return -1
-
-
-@kernel
-def owner_of(body, functions):  # type: ignore[no-untyped-def]
-    """Control table of the structure that a body belongs to, 0 if none: that of any ductile joint at it."""
-    constraint = integers(body, BODY_FULL_WORDS)[CONSTRAINTS]
-    while constraint != 0:
-        w = integers(constraint, CONSTRAINT_WORDS)
-        if w[CONSTRAINT_CLASS] == functions and w[CONTROL] != 0:
-            return w[CONTROL]
-        constraint = w[CONSTRAINT_NEXT_A] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_NEXT_B]
-    return 0
-
-
-@kernel
-def unite(one, other):  # type: ignore[no-untyped-def]
-    """Put the groups of two structures (addresses of control tables) together."""
-    first, second = views.control(one), views.control(other)
-    if first[at.HEAD] == 0:
-        first[at.HEAD] = one
-    if second[at.HEAD] == 0:
-        second[at.HEAD] = other
-    head, joining = first[at.HEAD], second[at.HEAD]
-    if head == joining:
-        return
-    t = first
-    while t[at.NEXT] != 0:
-        t = views.control(t[at.NEXT])
-    t[at.NEXT] = joining
-    while joining != 0:
-        t = views.control(joining)
-        t[at.HEAD] = head
-        joining = t[at.NEXT]
-
-
-@kernel
 def collect(c, t):  # type: ignore[no-untyped-def]
-    """Take over the contacts of this step, and form a group with the structures they are with."""
-    moving, body_at = t[at.MOVING], views.body_at(t)
+    """Take over the contacts of this step, and form a group with the structures they are with.
+
+    Those that Chipmunk would part the wrong way are left to Python first (`sim.far_side`), marked by a mass of -1.
+    """
+    moving, body_at, looking, astray = t[at.MOVING], views.body_at(t), t[at.ASTRAY] == 0, 0
     places, touches = views.places(t), views.touches(t)
     functions = integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_CLASS]
     count, missed, h = 0, 0, views.settings(t)[at.STEP]
@@ -192,16 +144,47 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 if w[ARBITER_STATE] & 0xFFFFFFFF == FIRST:
                     contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = 0.0, 0.0
                 touch[CACHED], touch[CACHED + 1] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE]
+                touch[KEPT], touch[KEPT + 1] = touch[CACHED], touch[CACHED + 1]
                 touch[EARLIER], touch[EARLIER + 1] = 0.0, 0.0
                 load_loose(touch, floats(other, BODY_WORDS))
                 for row in range(2):
                     touch[OTHER_START + row] = other_velocity(c, p, touch, row)
+                if looking and w[ARBITER_STATE] & 0xFFFFFFFF == FIRST and came_from_elsewhere(c, t, p, touch, slop):
+                    contact[CONTACT_NORMAL_MASS] = -1.0
+                    astray += 1
+                    continue
                 contact[CONTACT_NORMAL_MASS] = 0.0
                 contact[CONTACT_TANGENT_MASS] = 0.0
                 count += 1
             arbiter = w[ARBITER_NEXT_A] if is_a else w[ARBITER_NEXT_B]
     arrange(places, touches, count)
     t[at.CONTACTS], t[at.MISSED] = count, missed
+    if looking:
+        t[at.ASTRAY] = astray
+
+
+@kernel
+def came_from_elsewhere(c, t, place, touch, slop):  # type: ignore[no-untyped-def]
+    """Whether surfaces that meet for the first time must have overlapped along this normal before the last move.
+
+    So they have met along another one, and one body has gone past the middle of the other since, or into its side.
+    """
+    before = touch[GAP] - views.settings(t)[at.STEP] * (
+        touch[OTHER_START] + own_velocity(c, place, touch, 0, views.per_body(t, at.START_VELOCITY))
+    )
+    if before > -2.0 * slop:
+        return False
+    body = place[BODY_A] if place[OWNER_A] == 0 else place[BODY_B]
+    if floats(body, BODY_WORDS)[MASS_INVERSE] == 0.0:
+        body = place[BODY_B] if place[OWNER_A] == 0 else place[BODY_A]
+    # What rolls or slides on from one piece to the next is over it already.
+    arbiter = integers(body, BODY_FULL_WORDS)[ARBITERS]
+    while arbiter != 0:
+        w = integers(arbiter, ARBITER_WORDS)
+        if w[ARBITER_STATE] & 0xFFFFFFFF != FIRST:
+            return False
+        arbiter = w[ARBITER_NEXT_A] if w[ARBITER_BODY_A] == body else w[ARBITER_NEXT_B]
+    return True
 
 
 @kernel
@@ -258,84 +241,3 @@ def comes_before(p, q):  # type: ignore[no-untyped-def]
     if p[INDEX_B] != q[INDEX_B]:
         return p[INDEX_B] < q[INDEX_B]
     return p[HASH] < q[HASH]
-
-
-@kernel
-def direction(touch, row):  # type: ignore[no-untyped-def]
-    """Unit vector of a row (even: normal, odd: tangent) and its moments about a and b."""
-    dx, dy = touch[NORMAL], touch[NORMAL + 1]
-    if row & 1:
-        dx, dy = -dy, dx
-    return dx, dy, touch[ARM_A] * dy - touch[ARM_A + 1] * dx, touch[ARM_B] * dy - touch[ARM_B + 1] * dx
-
-
-@kernel
-def other_velocity(c, place, touch, row):  # type: ignore[no-untyped-def]
-    """What bodies that are not in structure ``c`` give to the velocity of b relative to a along a row, at present."""
-    dx, dy, ma, mb = direction(touch, row)
-    total = 0.0
-    if place[OWNER_B] != c:
-        b = floats(place[BODY_B], BODY_FULL_WORDS)
-        total += dx * b[VX] + dy * b[VX + 1] + mb * b[SPIN]
-    if place[OWNER_A] != c:
-        a = floats(place[BODY_A], BODY_FULL_WORDS)
-        total -= dx * a[VX] + dy * a[VX + 1] + ma * a[SPIN]
-    return total
-
-
-@kernel
-def own_velocity(c, place, touch, row, velocity):  # type: ignore[no-untyped-def]
-    """What the bodies of structure ``c`` give to it, at its velocities (bodies, 3)."""
-    dx, dy, ma, mb = direction(touch, row)
-    total = 0.0
-    if place[OWNER_B] == c:
-        v = velocity[place[INDEX_B]]
-        total += dx * v[0] + dy * v[1] + mb * v[2]
-    if place[OWNER_A] == c:
-        v = velocity[place[INDEX_A]]
-        total -= dx * v[0] + dy * v[1] + ma * v[2]
-    return total
-
-
-@kernel
-def add_row(c, place, touch, row, amount, vector):  # type: ignore[no-untyped-def]
-    """Add ``amount`` of a row's unit impulse to the bodies of structure ``c`` in its ``vector``, (bodies, 3)."""
-    dx, dy, ma, mb = direction(touch, row)
-    if place[OWNER_B] == c:
-        x = vector[place[INDEX_B]]
-        x[0] += amount * dx
-        x[1] += amount * dy
-        x[2] += amount * mb
-    if place[OWNER_A] == c:
-        x = vector[place[INDEX_A]]
-        x[0] -= amount * dx
-        x[1] -= amount * dy
-        x[2] -= amount * ma
-
-
-@kernel
-def push_loose(place, touch, row, amount, offset, spin):  # type: ignore[no-untyped-def]
-    """Give a row's impulse to the loose body of a contact, if it has one; velocities at ``offset`` and ``spin``."""
-    dx, dy, ma, mb = direction(touch, row)
-    if place[OWNER_B] == 0:
-        b = floats(place[BODY_B], BODY_FULL_WORDS)
-        b[offset] += amount * dx * b[MASS_INVERSE]
-        b[offset + 1] += amount * dy * b[MASS_INVERSE]
-        b[spin] += amount * mb * b[MOMENT_INVERSE]
-    if place[OWNER_A] == 0:
-        a = floats(place[BODY_A], BODY_FULL_WORDS)
-        a[offset] -= amount * dx * a[MASS_INVERSE]
-        a[offset + 1] -= amount * dy * a[MASS_INVERSE]
-        a[spin] -= amount * ma * a[MOMENT_INVERSE]
-
-
-def hash_table(addresses: list[int]) -> tuple[np.ndarray, np.ndarray]:
-    """Keys and values for `find`."""
-    size = 1 << max(2, (3 * len(addresses) // 2).bit_length())
-    keys, values = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=np.int64)
-    for index, body in enumerate(addresses):
-        slot = ((body >> 4) ^ (body >> 12)) & (size - 1)
-        while keys[slot] != 0:
-            slot = (slot + 1) & (size - 1)
-        keys[slot], values[slot] = body, index
-    return keys, values

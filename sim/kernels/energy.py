@@ -32,7 +32,6 @@ work and contact work.
 from sim.chipmunk import BODY_WORDS, CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE, CONTACT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.contacts import other_velocity, own_velocity
 from sim.kernels.inertia import moment_of
 from sim.kernels.kinematics import impulses, rates
 from sim.kernels.layout import (
@@ -49,6 +48,7 @@ from sim.kernels.layout import (
     WHERE,
     WHOLE_RATIO,
 )
+from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, kernel
 
 

@@ -63,8 +63,11 @@ def close_from_below(t, contact, plastic, numerical):  # type: ignore[no-untyped
     if ledger[LEDGER_CONTACT] < 0.0:
         ledger[LEDGER_NUMERICAL] += ledger[LEDGER_CONTACT]
         ledger[LEDGER_CONTACT] = 0.0
-    least = min(numerical, 0.0)
-    if views.settings(t)[BETA] != 0.0:
+    settings = views.settings(t)
+    # Where the average-acceleration rule is wanted, its own entry goes up and down; what a step that is longer than the
+    # last one has created is taken back as soon as it moves.
+    least = min(numerical, 0.0) if settings[WANTED_BETA] != 0.0 else 0.0
+    if settings[BETA] != 0.0:
         return
     if ledger[LEDGER_NUMERICAL] >= least:
         paid = min(ledger[LEDGER_OWED], max(ledger[LEDGER_NUMERICAL], 0.0))
@@ -74,7 +77,7 @@ def close_from_below(t, contact, plastic, numerical):  # type: ignore[no-untyped
         return
     move_between(ledger, LEDGER_CONTACT, ledger[LEDGER_CONTACT] - contact, least)
     largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
-    take_out(t, min(-_ROUNDING * largest, numerical) - ledger[LEDGER_NUMERICAL])
+    take_out(t, min(-_ROUNDING * largest, least) - ledger[LEDGER_NUMERICAL])
     ledger[LEDGER_OWED] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC] - plastic, least)
 
 

@@ -9,10 +9,10 @@ from sim.chipmunk import BODY_WORDS, SPIN, VX
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import load_positions, move
-from sim.kernels.contacts import own_velocity
 from sim.kernels.inertia import moment_of
 from sim.kernels.layout import GAP, INVERSE_M, LOOSE_START, OTHER_START, STEP, STEP_RATIO, STRIKE, WHOLE_STEP
 from sim.kernels.others import which
+from sim.kernels.rows import own_velocity
 from sim.memory import floats, kernel
 
 

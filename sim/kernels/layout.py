@@ -5,8 +5,10 @@ The control table is int64: sizes, counters, flags, then the addresses of the ar
 
 # Sizes.
 BODIES, MOVING, JOINTS, LOWER = 0, 1, 2, 3
-# What happened: first joint whose law gave a number that is not finite (or -1), counters, newly broken joints.
+# What happened: first joint whose law gave a number that is not finite (-1 if none, or `WITH_OTHERS` where another
+# structure's did), counters, newly broken joints.
 FAULT, NEWTON_STEPS, UNCONVERGED, BROKE = 4, 5, 6, 7
+WITH_OTHERS = 1 << 40
 # Within a step: address of the constraint that acts for all (0 between steps); whether nothing was solved yet.
 LEADER, FRESH = 8, 9
 # Address of a C function (structure's key) called when a joint broke or a step failed, and that key.
@@ -24,9 +26,12 @@ FLOWING = 24
 # In this step: whether a body was moved by anything but its velocity (if none was, all shifts are zero); whether a body
 # turns with added inertia, and whether nothing holds the structure.
 SHIFTED, TURNING, FREE = 21, 22, 23
-# In how many parts the step is taken, and whether loose bodies have been moved ahead with them, see `parts`.
-PARTS, AHEAD = 25, 26
-_FIRST_ADDRESS = 28
+# In how many parts the step is taken, and whether loose bodies have been moved ahead with them, see `parts`; whether
+# the last one was taken in parts.
+PARTS, AHEAD, AFTER_PARTS = 25, 26, 30
+# Loose bodies noted in `PUSHES`; pairs of shapes that Chipmunk would part the wrong way (-1 once that was seen to).
+PUSHED, ASTRAY = 28, 29
+_FIRST_ADDRESS = 31
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -73,8 +78,10 @@ _FIRST_ADDRESS = 28
     PATTERN,  # (bodies, 3): forces of the load pattern for a load factor of 1
     IMAGE,  # (bodies, 3): H⁻¹ of it
     BEGUN_AT,  # (bodies, 3): positions at the start of a step that is taken in parts
-) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 45)
-CONTROL_WORDS = _FIRST_ADDRESS + 45
+    COPY,  # what such a step found, see `refusal`; made when first needed
+    PUSHES,  # (room, 4): address (int64) and pseudo-velocities with which loose bodies ended the last step
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 47)
+CONTROL_WORDS = _FIRST_ADDRESS + 47
 
 # Settings (float64); the spread ones are those of the load pattern's spring, see `spread`; BETA and DELTA of a step are
 # chosen from the wanted ones.
@@ -83,7 +90,9 @@ SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 7, 8, 9
 WANTED_BETA, WANTED_DELTA = 10, 11
 # Chipmunk's step, of which `STEP` may be a part, and over the last one; energy of a blow that lasts, see `blow`.
 WHOLE_STEP, WHOLE_RATIO, BLOW = 12, 13, 14
-SETTINGS_WORDS = 15
+_NUMBERS = 15
+# All of them again, as they were before the step.
+BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 
 # Ledger [J], see `energy`: running totals, the present kinetic and elastic energy, plastic work that is to be booked in
 # the next step, and such that nothing has paid for yet.
@@ -133,7 +142,7 @@ PLACE_WORDS = 8
 # cached impulses, velocities of the other side's point at the step's start (normal, tangent); velocity x, y and spin of
 # the loose body at the step's start, distance of the surfaces, impulses of the step's earlier parts, wanted velocity by
 # restitution alone, speed with which bodies struck each other in this contact, position x, y and angle of the
-# loose body at the step's start.
+# loose body at the step's start, cached impulses before the step.
 NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
-CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE, LOOSE_AT = 10, 12, 14, 17, 18, 20, 21, 22
-TOUCH_WORDS = 25
+CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE, LOOSE_AT, KEPT = 10, 12, 14, 17, 18, 20, 21, 22, 25
+TOUCH_WORDS = 27

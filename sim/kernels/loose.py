@@ -29,7 +29,7 @@ from sim.chipmunk import (
     SPIN,
     VX,
 )
-from sim.kernels.contacts import owner_of
+from sim.kernels.owners import owner_of
 from sim.memory import floats, integers
 
 #: Kinds of bodies: in a structure; loose, and loose with constraints of Chipmunk's own; static or kinematic.

@@ -156,7 +156,7 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
     motion = motion_scale(t)
     converged = error <= tolerance * (size + motion) + rounding
     best = error
-    while not converged and steps < MOST_NEWTON_STEPS:
+    while not converged and steps < MOST_NEWTON_STEPS and math.isfinite(error):
         steps += 1
         if steps == _PATIENCE:
             error, size, spring = predict_elastic(t, factor, tolerance)

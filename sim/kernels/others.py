@@ -5,13 +5,33 @@ A step taken in parts moves them along: they are found once, gathered by address
 
 import numpy as np
 
-from sim.chipmunk import ANGLE, BIAS_SPIN, BIAS_VX, BODY_FULL_WORDS, BODY_WORDS, MASS_INVERSE, SPIN, VX, X
+from sim.chipmunk import (
+    ANGLE,
+    ARBITER_BODY_A,
+    ARBITER_BODY_B,
+    ARBITER_CONTACTS,
+    ARBITER_COUNT,
+    ARBITER_NEXT_A,
+    ARBITER_NEXT_B,
+    ARBITER_WORDS,
+    ARBITERS,
+    BIAS_SPIN,
+    BIAS_VX,
+    BODY_FULL_WORDS,
+    BODY_WORDS,
+    CONTACT_NORMAL_MASS,
+    CONTACT_WORDS,
+    MASS_INVERSE,
+    SPIN,
+    VX,
+    X,
+)
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.bodies import move
-from sim.kernels.contacts import push_loose
+from sim.kernels.bodies import move, put
 from sim.kernels.layout import BODY_A, BODY_B, CACHED, LOOSE_START, OWNER_A, OWNER_B, WHOLE_RATIO
-from sim.memory import floats, kernel
+from sim.kernels.rows import push_loose
+from sim.memory import floats, integers, kernel
 
 
 @kernel
@@ -63,7 +83,7 @@ def which(others, place):  # type: ignore[no-untyped-def]
 
 @kernel
 def release(head, others):  # type: ignore[no-untyped-def]
-    """Take back what was done to the others so far; returns how forces from outside change their velocities."""
+    """Take back what was done to the others so far; returns how all but the group changes their velocities."""
     pushes, c = np.zeros((len(others), 3)), head
     while c != 0:
         t = views.control(c)
@@ -91,6 +111,23 @@ def release(head, others):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def struck_besides(others, pushes):  # type: ignore[no-untyped-def]
+    """Split off the changes of those that touch something besides the group; what contacts gave is among them."""
+    struck = np.zeros((len(others), 3))
+    for i in range(len(others)):
+        arbiter = integers(others[i], BODY_FULL_WORDS)[ARBITERS]
+        while arbiter != 0:
+            w = integers(arbiter, ARBITER_WORDS)
+            # A group has set the masses of its own contacts to zero.
+            if w[ARBITER_COUNT] & 0xFFFFFFFF and floats(w[ARBITER_CONTACTS], CONTACT_WORDS)[CONTACT_NORMAL_MASS] != 0.0:
+                for axis in range(3):
+                    struck[i, axis] += pushes[i, axis]
+                    pushes[i, axis] = 0.0
+            arbiter = w[ARBITER_NEXT_A] if w[ARBITER_BODY_A] == others[i] else w[ARBITER_NEXT_B]
+    return struck
+
+
+@kernel
 def load_others(others, out):  # type: ignore[no-untyped-def]
     """Velocities of the others."""
     for i in range(len(others)):
@@ -103,7 +140,65 @@ def put_back(body, place, h, whole):  # type: ignore[no-untyped-def]
     """Put a body back to ``place``, from where the next ``whole`` step moves it to what is a part ``h`` from here."""
     b = floats(body, BODY_FULL_WORDS)
     x, y, turn = b[X] - place[0], b[X + 1] - place[1], b[ANGLE] - place[2]
-    move(body, -x, -y, -turn)
+    put(body, place[0], place[1], place[2])
     b[BIAS_VX] += (x + h * b[VX]) / whole - b[VX]
     b[BIAS_VX + 1] += (y + h * b[VX + 1]) / whole - b[VX + 1]
     b[BIAS_SPIN] += (turn + h * b[SPIN]) / whole - b[SPIN]
+
+
+@kernel
+def even_out(t, h, whole):  # type: ignore[no-untyped-def]
+    """After a step of length ``whole`` in parts, take back what pseudo-velocities did too much in a move of ``h``.
+
+    They lead to where the last part ends in a move as long as that step; velocities do the rest.
+    """
+    body_at, begun, over = views.body_at(t), views.per_body(t, at.BEGUN_AT), h - whole
+    for i in range(t[at.MOVING]):
+        b = floats(body_at[i], BODY_WORDS)
+        x, y, turn = b[X] - begun[i, 0] - h * b[VX], b[X + 1] - begun[i, 1] - h * b[VX + 1], b[ANGLE] - begun[i, 2]
+        move(body_at[i], -over / h * x, -over / h * y, -over / h * (turn - h * b[SPIN]))
+    for k in range(t[at.PUSHED]):
+        body, push = integers(t[at.PUSHES] + 32 * k, 1)[0], floats(t[at.PUSHES] + 32 * k, 4)
+        if touches(t, body):
+            move(body, -over * push[1], -over * push[2], -over * push[3])
+            push[1], push[2], push[3] = whole / h * push[1], whole / h * push[2], whole / h * push[3]
+
+
+@kernel
+def touches(t, body):  # type: ignore[no-untyped-def]
+    """Whether the body at an address, which may be no body any more, touches a structure."""
+    body_at = views.body_at(t)
+    for i in range(t[at.MOVING]):
+        arbiter = integers(body_at[i], BODY_FULL_WORDS)[ARBITERS]
+        while arbiter != 0:
+            w = integers(arbiter, ARBITER_WORDS)
+            if w[ARBITER_BODY_A] == body or w[ARBITER_BODY_B] == body:
+                return True
+            arbiter = w[ARBITER_NEXT_A] if w[ARBITER_BODY_A] == body_at[i] else w[ARBITER_NEXT_B]
+    return False
+
+
+@kernel
+def note_pushes(t):  # type: ignore[no-untyped-def]
+    """Note with which pseudo-velocities the loose bodies at the contacts go into their next move."""
+    places, count = views.places(t), 0
+    t[at.PUSHED] = 0
+    for k in range(t[at.CONTACTS]):
+        if places[k, OWNER_A] != 0 and places[k, OWNER_B] != 0:
+            continue
+        body = places[k, BODY_A] if places[k, OWNER_A] == 0 else places[k, BODY_B]
+        if pushed(t, body) < 0:
+            b, row = floats(body, BODY_FULL_WORDS), floats(t[at.PUSHES] + 32 * count, 4)
+            integers(t[at.PUSHES] + 32 * count, 1)[0] = body
+            row[1], row[2], row[3] = b[BIAS_VX], b[BIAS_VX + 1], b[BIAS_SPIN]
+            count += 1
+            t[at.PUSHED] = count
+
+
+@kernel
+def pushed(t, body):  # type: ignore[no-untyped-def]
+    """Which row of those noted is a loose body's, or -1."""
+    for k in range(t[at.PUSHED]):
+        if integers(t[at.PUSHES] + 32 * k, 1)[0] == body:
+            return k
+    return -1

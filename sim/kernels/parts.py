@@ -35,7 +35,7 @@ from sim.kernels.blow import OVER, elastic_energy, flows, forget
 from sim.kernels.bodies import load_velocities, move, store_velocities, write
 from sim.kernels.commit import commit
 from sim.kernels.complement import relative
-from sim.kernels.contacts import SETTLE, kept, other_velocity
+from sim.kernels.contacts import SETTLE, kept
 from sim.kernels.energy import close
 from sim.kernels.guard import close_from_below
 from sim.kernels.inertia import add_inertia, mass_of, moment_of, weigh
@@ -65,7 +65,8 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.newton import restart
-from sim.kernels.others import load_others, others_of, put_back, release, which
+from sim.kernels.others import load_others, others_of, put_back, release, struck_besides, which
+from sim.kernels.rows import other_velocity
 from sim.kernels.settle import finite, settle_bounces
 from sim.memory import clear, floats, integers, kernel
 
@@ -98,9 +99,12 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     """Take all parts of a step but the last one, and begin that; whether all of them converged."""
     others = others_of(head)
     pushes = release(head, others)
+    struck = struck_besides(others, pushes)
     late = lateness(head)
     go_back(head, others, pushes, late)
     scale_all(pushes, open_step(head, late, parts))
+    # What another body gave comes once, whatever the length of the parts, so that no momentum is lost.
+    add_all(pushes, struck, 1.0 / parts)
     before, lost, converged = np.empty((len(others), 3)), 0.0, True
     stored, flowed = elastic_energy(head), False
     for _ in range(parts - 1):
@@ -165,6 +169,14 @@ def scale_all(array, factor):  # type: ignore[no-untyped-def]
     for i in range(array.shape[0]):
         for k in range(array.shape[1]):
             array[i, k] *= factor
+
+
+@kernel
+def add_all(array, other, factor):  # type: ignore[no-untyped-def]
+    """Add a multiple of one two-dimensional array to another."""
+    for i in range(array.shape[0]):
+        for k in range(array.shape[1]):
+            array[i, k] += factor * other[i, k]
 
 
 @kernel

@@ -13,10 +13,10 @@ for. Without any bounce j·v₁ is not positive, and nothing is created.
 from sim.chipmunk import BODY_WORDS, CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE, CONTACT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.contacts import other_velocity, own_velocity
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.kinematics import rates
 from sim.kernels.layout import BETA, CACHED, OTHER_START, OWNER_A, OWNER_B, STEP, TANGENT, WANTED, WHERE, WHOLE_RATIO
+from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, kernel
 
 #: Times that a bounce is halved before none is asked for.

@@ -8,7 +8,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.commit import weaken
 from sim.kernels.complement import NOT_FINITE, gather_contacts, sum_up, touch
-from sim.kernels.layout import CACHED
+from sim.kernels.layout import CACHED, INERTIA_I, INERTIA_M
 from sim.kernels.newton import iterate
 from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
 from sim.memory import kernel
@@ -83,13 +83,25 @@ def book_cached(c):  # type: ignore[no-untyped-def]
 
 @kernel
 def finite(t):  # type: ignore[no-untyped-def]
-    """Whether impulses and velocities are finite; otherwise the first joint whose impulse is not is the fault."""
-    impulse, velocity = views.per_joint(t, at.IMPULSE), views.per_body(t, at.VELOCITY)
+    """Whether impulses, velocities and kinetic energies are finite; otherwise the fault is the first joint's."""
+    impulse, velocity, weight = views.per_joint(t, at.IMPULSE), views.per_body(t, at.VELOCITY), views.weight(t)
     for k in range(t[at.JOINTS]):
         if not math.isfinite(impulse[k, 0] + impulse[k, 1] + impulse[k, 2]):
             t[at.FAULT] = k
             return False
     for i in range(t[at.MOVING]):
-        if not math.isfinite(velocity[i, 0] + velocity[i, 1] + velocity[i, 2]):
-            t[at.FAULT] = 0
+        x, y, w = velocity[i, 0], velocity[i, 1], velocity[i, 2]
+        if not math.isfinite(weight[i, INERTIA_M] * (x * x + y * y) + weight[i, INERTIA_I] * w * w):
+            t[at.FAULT] = first_joint_at(t, i)
+            return False
     return t[at.FAULT] < 0
+
+
+@kernel
+def first_joint_at(t, body):  # type: ignore[no-untyped-def]
+    """The first joint of a body."""
+    joint_bodies = views.joint_bodies(t)
+    for k in range(t[at.JOINTS]):
+        if joint_bodies[k, 0] == body or joint_bodies[k, 1] == body:
+            return k
+    return 0

@@ -1,28 +1,22 @@
 """One step of a structure: its beginning, the solves in Chipmunk's iterations, and its end."""
 
-from sim.chipmunk import (
-    BIAS_SPIN,
-    BIAS_VX,
-    BODY_FULL_WORDS,
-    CONTACT_NORMAL_IMPULSE,
-    CONTACT_TANGENT_IMPULSE,
-    CONTACT_WORDS,
-    SPIN,
-    VX,
-)
+import math
+
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blow import count_parts
-from sim.kernels.bodies import arrive, depart, move, take_in, write
+from sim.kernels.bodies import arrive, depart, take_in, write
 from sim.kernels.contacts import collect, hand_back
 from sim.kernels.guard import choose_scheme
 from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import prepare, take_up
-from sim.kernels.layout import WHERE
+from sim.kernels.layout import BEFORE
 from sim.kernels.newton import restart
+from sim.kernels.others import even_out, note_pushes
 from sim.kernels.parts import close_step, conclude, take_parts
+from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.settle import book_cached, finite, settle_bounces
-from sim.memory import call_notice, clear, floats, kernel
+from sim.memory import call_notice, clear, kernel
 
 
 @kernel
@@ -30,29 +24,39 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     """Start of a step: where the joints are, and what their bodies' velocities were."""
     t = views.control(c)
     settings = views.settings(t)
+    for i in range(BEFORE):
+        settings[BEFORE + i] = settings[i]
     ratio = h / settings[at.STEP] if settings[at.STEP] > 0.0 else 0.0
     settings[at.STEP] = h
     settings[at.STEP_RATIO] = ratio if ratio > 0.0 else 1.0
+    if t[at.PARTS] > 1 and h != settings[at.WHOLE_STEP] and h > 0.0:
+        even_out(t, h, settings[at.WHOLE_STEP])
     settings[at.WHOLE_RATIO] = h / settings[at.WHOLE_STEP] if settings[at.WHOLE_STEP] > 0.0 else 1.0
     settings[at.WHOLE_STEP] = h
+    t[at.AFTER_PARTS] = 1 if t[at.PARTS] > 1 else 0
     t[at.PARTS], t[at.AHEAD], t[at.BROKE] = 1, 0, 0
     settings[at.SPREAD_IMPULSE] *= ratio * t[at.SPREAD]
     t[at.FRESH] = 1
-    spin, touching = arrive(t, h)
+    spin, touching, energy = arrive(t, h)
+    if t[at.FAULT] < 0 and not (math.isfinite(energy) and h > 0.0):
+        check_bodies(t)
+        # Python notes how all else in the space is.
+        call_notice(t[at.NOTICE], t[at.KEY])
     choose_scheme(t, spin)
     take_up(t, ratio)
     add_inertia(t)
     prepare(t)
-    t[at.PUSHED_APART], t[at.CONTACTS] = 0, 0
+    t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY] = 0, 0, 0
     if not touching:
         return
     clear(views.per_body(t, at.CONTACT_IMPULSE))
     collect(c, t)
-    if t[at.MISSED] > 0:
-        # Python makes room, and all contacts are collected anew.
+    if t[at.MISSED] > 0 or t[at.ASTRAY] > 0:
+        # Python makes room, and turns contacts the right way; all are collected anew.
         hand_back(t)
         t[at.BROKE] = 0
         call_notice(t[at.NOTICE], t[at.KEY])
+        t[at.ASTRAY] = -1
         collect(c, t)
 
 
@@ -70,6 +74,9 @@ def solve(c):  # type: ignore[no-untyped-def]
             return
         touching = touching or t[at.CONTACTS] > 0
         differs = take_in(t) or differs
+        if fresh and not finite(t):
+            refuse(c)
+            return
         member = t[at.NEXT]
     if not (differs or fresh or touching):
         return  # nothing else has touched the structure since it was solved
@@ -79,6 +86,7 @@ def solve(c):  # type: ignore[no-untyped-def]
             book_cached(c)
         parts = count_parts(c)
         if parts > 1:
+            keep(c, parts)
             converged = take_parts(c, parts, fresh, touching)
         member = c
         while member != 0:
@@ -104,28 +112,6 @@ def solve(c):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def refuse(c):  # type: ignore[no-untyped-def]
-    """Put the bodies of a group back to where and how they were before the step."""
-    member = c
-    while member != 0:
-        t = views.control(member)
-        t[at.FAULT] = max(t[at.FAULT], 0)
-        clear(views.per_joint(t, at.IMPULSE))
-        h, body_at = views.settings(t)[at.STEP], views.body_at(t)
-        before, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
-        for i in range(t[at.MOVING]):
-            b = floats(body_at[i], BODY_FULL_WORDS)
-            b[VX], b[VX + 1], b[SPIN] = before[i, 0], before[i, 1], before[i, 2]
-            b[BIAS_VX], b[BIAS_VX + 1], b[BIAS_SPIN] = 0.0, 0.0, 0.0
-            move(body_at[i], -h * last[i, 0], -h * last[i, 1], -h * last[i, 2])
-        places = views.places(t)
-        for k in range(t[at.CONTACTS]):
-            contact = floats(places[k, WHERE], CONTACT_WORDS)
-            contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = 0.0, 0.0
-        member = t[at.NEXT]
-
-
-@kernel
 def finish(c):  # type: ignore[no-untyped-def]
     """End of a step: commit the laws, and tell Python when a joint broke or the step was refused."""
     t = views.control(c)
@@ -134,11 +120,13 @@ def finish(c):  # type: ignore[no-untyped-def]
         take_in(t)
         conclude(c, t)
         depart(t)
-    else:
-        clear(views.shift(t))
-        t[at.SHIFTED] = 0
     if t[at.PARTS] > 1:
         close_step(head, t)
+    if t[at.FAULT] >= 0:
+        roll_back(t)
+    note_pushes(t)
     t[at.HEAD], t[at.NEXT] = 0, 0
-    if t[at.FAULT] >= 0 or t[at.BROKE] > 0:
+    if t[at.FAULT] == at.WITH_OTHERS:
+        t[at.FAULT] = -1
+    elif t[at.FAULT] >= 0 or t[at.BROKE] > 0:
         call_notice(t[at.NOTICE], t[at.KEY])

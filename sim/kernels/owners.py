@@ -1,0 +1,75 @@
+"""Which structure a body belongs to, and structures that are solved together because they touch."""
+
+import numpy as np
+
+from sim.chipmunk import (
+    BODY_FULL_WORDS,
+    CONSTRAINT_BODY_A,
+    CONSTRAINT_CLASS,
+    CONSTRAINT_NEXT_A,
+    CONSTRAINT_NEXT_B,
+    CONSTRAINT_WORDS,
+    CONSTRAINTS,
+    CONTROL,
+)
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.memory import integers, kernel
+
+
+@kernel
+def find(t, body):  # type: ignore[no-untyped-def]
+    """Index of the body at an address in the structure, or -1; open addressing, a power of two long."""
+    length = t[at.HASH_LENGTH]
+    keys, values = integers(t[at.BODY_KEYS], length), integers(t[at.BODY_VALUES], length)
+    slot = ((body >> 4) ^ (body >> 12)) & (length - 1)
+    while keys[slot] != 0:
+        if keys[slot] == body:
+            return values[slot]
+        slot = (slot + 1) & (length - 1)
+    return -1
+
+
+@kernel
+def owner_of(body, functions):  # type: ignore[no-untyped-def]
+    """Control table of the structure that a body belongs to, 0 if none: that of any ductile joint at it."""
+    constraint = integers(body, BODY_FULL_WORDS)[CONSTRAINTS]
+    while constraint != 0:
+        w = integers(constraint, CONSTRAINT_WORDS)
+        if w[CONSTRAINT_CLASS] == functions and w[CONTROL] != 0:
+            return w[CONTROL]
+        constraint = w[CONSTRAINT_NEXT_A] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_NEXT_B]
+    return 0
+
+
+@kernel
+def unite(one, other):  # type: ignore[no-untyped-def]
+    """Put the groups of two structures (addresses of control tables) together."""
+    first, second = views.control(one), views.control(other)
+    if first[at.HEAD] == 0:
+        first[at.HEAD] = one
+    if second[at.HEAD] == 0:
+        second[at.HEAD] = other
+    head, joining = first[at.HEAD], second[at.HEAD]
+    if head == joining:
+        return
+    t = first
+    while t[at.NEXT] != 0:
+        t = views.control(t[at.NEXT])
+    t[at.NEXT] = joining
+    while joining != 0:
+        t = views.control(joining)
+        t[at.HEAD] = head
+        joining = t[at.NEXT]
+
+
+def hash_table(addresses: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    """Keys and values for `find`."""
+    size = 1 << max(2, (3 * len(addresses) // 2).bit_length())
+    keys, values = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=np.int64)
+    for index, body in enumerate(addresses):
+        slot = ((body >> 4) ^ (body >> 12)) & (size - 1)
+        while keys[slot] != 0:
+            slot = (slot + 1) & (size - 1)
+        keys[slot], values[slot] = body, index
+    return keys, values

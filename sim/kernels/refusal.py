@@ -1,0 +1,218 @@
+"""A step that is refused, because a number in it is not finite, leaves everything as it was before.
+
+Laws, ledger and positions change where a step is concluded, so there is little to undo, unless it is taken in parts:
+what the first of them change is copied before. Bodies go back to where Chipmunk's move of this step took them from.
+
+What comes from outside, forces without bound or a step that is none, is noticed before anything has changed but
+positions, and Python puts the whole space back (`sim.step_back`). What shows while a structure is solved concerns all
+structures that touch each other, and the free loose bodies that touch them; bodies on constraints of Chipmunk's own,
+and whatever else is in the space, have taken their step by then.
+"""
+
+import math
+
+from sim.chipmunk import (
+    ANGLE,
+    BIAS_SPIN,
+    BIAS_VX,
+    BODY_FULL_WORDS,
+    BODY_WORDS,
+    CONSTRAINTS,
+    CONTACT_NORMAL_IMPULSE,
+    CONTACT_TANGENT_IMPULSE,
+    CONTACT_WORDS,
+    MASS_INVERSE,
+    SPIN,
+    VX,
+    X,
+)
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.bodies import move, put, reached, store_velocities
+from sim.kernels.layout import (
+    BEFORE,
+    BODY_A,
+    BODY_B,
+    KEPT,
+    LOOSE_AT,
+    LOOSE_START,
+    OWNER_A,
+    OWNER_B,
+    RESULT_FORCE,
+    STEP,
+    WHERE,
+    WHOLE_STEP,
+)
+from sim.kernels.others import pushed
+from sim.kernels.settle import first_joint_at
+from sim.memory import call_notice, clear, floats, integers, kernel
+
+# Over 1 + |x|: nearer than this to where the last step ended, a body has gone back to just there [m, rad].
+_ROUNDING = 1e-12
+
+
+@kernel
+def check_bodies(t):  # type: ignore[no-untyped-def]
+    """Before forces act: the fault is a joint's whose body they, or its own numbers, would lead out of all bounds."""
+    h, body_at = views.settings(t)[STEP], views.body_at(t)
+    if not 0.0 < h < math.inf:
+        t[at.FAULT] = 0
+        return
+    for i in range(t[at.MOVING]):
+        if not math.isfinite(reached(floats(body_at[i], BODY_WORDS), h)):
+            t[at.FAULT] = first_joint_at(t, i)
+            return
+
+
+@kernel
+def keep(head, parts):  # type: ignore[no-untyped-def]
+    """Copy what the parts of a step are going to change in a group."""
+    c = head
+    while c != 0:
+        t = views.control(c)
+        t[at.PARTS] = parts
+        if t[at.COPY] == 0:
+            # Python makes room.
+            call_notice(t[at.NOTICE], t[at.KEY])
+        copy_all(t, 1)
+        c = t[at.NEXT]
+
+
+@kernel
+def refuse(head):  # type: ignore[no-untyped-def]
+    """Stop a group's step; until it ends, bodies have their velocities of before."""
+    c = head
+    while c != 0:
+        t = views.control(c)
+        if t[at.FAULT] < 0:
+            t[at.FAULT] = at.WITH_OTHERS
+        clear(views.per_joint(t, at.IMPULSE))
+        store_velocities(t, views.per_body(t, at.START_VELOCITY))
+        c = t[at.NEXT]
+
+
+@kernel
+def roll_back(t):  # type: ignore[no-untyped-def]
+    """Put a structure, and free loose bodies that touch it, back to how they were before the step."""
+    settings, body_at, begun = views.settings(t), views.body_at(t), views.per_body(t, at.BEGUN_AT)
+    h = settings[WHOLE_STEP]
+    if t[at.PARTS] > 1:
+        for i in range(t[at.MOVING]):
+            put(body_at[i], begun[i, 0], begun[i, 1], begun[i, 2])
+        copy_all(t, -1)
+    for i in range(BEFORE):
+        settings[i] = settings[BEFORE + i]
+    store_velocities(t, views.per_body(t, at.START_VELOCITY))
+    shift = views.shift(t)
+    for i in range(t[at.BODIES]):
+        for axis in range(3):
+            # How it was moved, back to the pseudo-velocity by which.
+            shift[i, axis] = shift[i, axis] / h if math.isfinite(shift[i, axis] / h) else 0.0
+    for i in range(t[at.MOVING]):
+        step_back(t, i, h)
+    t[at.SHIFTED] = 1
+    t[at.PARTS] = 1 + t[at.AFTER_PARTS]
+    impulse, result = views.per_joint(t, at.IMPULSE), views.result(t)
+    for k in range(t[at.JOINTS]):
+        for i in range(3):
+            impulse[k, i] = -settings[STEP] * result[k, RESULT_FORCE + i]
+    t[at.BROKE] = 0
+    give_back_contacts(t, h)
+
+
+@kernel
+def step_back(t, i, h):  # type: ignore[no-untyped-def]
+    """Put body i to where the last step ended, or where it was put by hand since.
+
+    A step in parts puts bodies back to where it had begun, with a pseudo-velocity that leads on from there.
+    """
+    last, noted, begun = (
+        views.per_body(t, at.LAST_VELOCITY),
+        views.per_body(t, at.LAST_POSITION),
+        views.per_body(t, at.BEGUN_AT),
+    )
+    shift, body = views.shift(t), views.body_at(t)[i]
+    b = floats(body, BODY_FULL_WORDS)
+    for axis in range(3):
+        word, push = (ANGLE, BIAS_SPIN) if axis == 2 else (X + axis, BIAS_VX + axis)
+        now, b[push] = b[word], shift[i, axis]
+        if t[at.AFTER_PARTS] == 1:
+            b[word] = begun[i, axis]
+            b[push] = (now - b[word]) / h - last[i, axis] if math.isfinite(now / h) else 0.0
+            continue
+        b[word] = now - h * (last[i, axis] + shift[i, axis])
+        by_hand = abs(b[word] - noted[i, axis])
+        if not math.isfinite(b[word]) or by_hand <= _ROUNDING * (1.0 + abs(b[word])):
+            b[word] = noted[i, axis]
+    move(body, 0.0, 0.0, 0.0)
+
+
+@kernel
+def give_back_contacts(t, h):  # type: ignore[no-untyped-def]
+    """Give contacts the impulses they came with, and free loose bodies their places and velocities."""
+    places, touches = views.places(t), views.touches(t)
+    for k in range(t[at.CONTACTS]):
+        place, touch = places[k], touches[k]
+        contact = floats(place[WHERE], CONTACT_WORDS)
+        contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = touch[KEPT], touch[KEPT + 1]
+        if place[OWNER_A] != 0 and place[OWNER_B] != 0:
+            continue
+        body = place[BODY_A] if place[OWNER_A] == 0 else place[BODY_B]
+        b = floats(body, BODY_FULL_WORDS)
+        if b[MASS_INVERSE] == 0.0 or integers(body, BODY_FULL_WORDS)[CONSTRAINTS] != 0:
+            continue
+        b[VX], b[VX + 1], b[SPIN] = touch[LOOSE_START], touch[LOOSE_START + 1], touch[LOOSE_START + 2]
+        row = pushed(t, body)
+        for axis in range(3):
+            b[BIAS_SPIN if axis == 2 else BIAS_VX + axis] = (
+                floats(t[at.PUSHES] + 32 * row, 4)[1 + axis] if row >= 0 else 0.0
+            )
+        put(
+            body,
+            touch[LOOSE_AT] - h * (b[VX] + b[BIAS_VX]),
+            touch[LOOSE_AT + 1] - h * (b[VX + 1] + b[BIAS_VX + 1]),
+            touch[LOOSE_AT + 2] - h * (b[SPIN] + b[BIAS_SPIN]),
+        )
+
+
+@kernel
+def copy_all(t, way):  # type: ignore[no-untyped-def]
+    """Copy what a concluded step changes, or back for a negative ``way``; `words_to_copy` counts it."""
+    joints, bodies, place = t[at.JOINTS], t[at.BODIES], t[at.COPY]
+    place = copy(t[at.ACTIVE], place, joints, way)
+    place = copy(t[at.GRADIENT], place, at.GRADIENT_WORDS * joints, way)
+    place = copy(t[at.RESPONSE], place, at.RESPONSE_WORDS * joints, way)
+    place = copy(t[at.RESULT], place, at.RESULT_WORDS * joints, way)
+    place = copy(t[at.LEDGER], place, at.LEDGER_WORDS, way)
+    place = copy(t[at.SHIFT], place, 6 * bodies, way)
+    place = copy(t[at.START_VELOCITY], place, 3 * bodies, way)
+    place = copy(t[at.LAST_VELOCITY], place, 3 * bodies, way)
+    place = copy(t[at.LAST_POSITION], place, 3 * bodies, way)
+    place = copy(t[at.BEGUN_AT], place, 3 * bodies, way)
+    flowing = integers(place, 1)
+    if way > 0:
+        flowing[0] = t[at.FLOWING]
+    else:
+        t[at.FLOWING] = flowing[0]
+    place += 8
+    laws = views.laws(t)
+    for k in range(joints):
+        place = copy(laws[k, 3], place, laws[k, 4], way)
+
+
+@kernel
+def copy(original, place, words, way):  # type: ignore[no-untyped-def]
+    """Copy so many words to ``place``, or back; returns where the next ones go."""
+    here, there = integers(original, words), integers(place, words)
+    for i in range(words):
+        if way > 0:
+            there[i] = here[i]
+        else:
+            here[i] = there[i]
+    return place + 8 * words
+
+
+def words_to_copy(joints: int, bodies: int, states: int) -> int:
+    """Words that `copy_all` copies; ``states`` of them are the laws'."""
+    per_joint = 1 + at.GRADIENT_WORDS + at.RESPONSE_WORDS + at.RESULT_WORDS
+    return per_joint * joints + 18 * bodies + at.LEDGER_WORDS + 1 + states

@@ -1,0 +1,74 @@
+"""The rows of a contact: its unit impulses along normal and tangent, and what they and bodies do to each other."""
+
+from sim.chipmunk import BODY_FULL_WORDS, MASS_INVERSE, MOMENT_INVERSE, SPIN, VX
+from sim.kernels.layout import ARM_A, ARM_B, BODY_A, BODY_B, INDEX_A, INDEX_B, NORMAL, OWNER_A, OWNER_B
+from sim.memory import floats, kernel
+
+
+@kernel
+def direction(touch, row):  # type: ignore[no-untyped-def]
+    """Unit vector of a row (even: normal, odd: tangent) and its moments about a and b."""
+    dx, dy = touch[NORMAL], touch[NORMAL + 1]
+    if row & 1:
+        dx, dy = -dy, dx
+    return dx, dy, touch[ARM_A] * dy - touch[ARM_A + 1] * dx, touch[ARM_B] * dy - touch[ARM_B + 1] * dx
+
+
+@kernel
+def other_velocity(c, place, touch, row):  # type: ignore[no-untyped-def]
+    """What bodies that are not in structure ``c`` give to the velocity of b relative to a along a row, at present."""
+    dx, dy, ma, mb = direction(touch, row)
+    total = 0.0
+    if place[OWNER_B] != c:
+        b = floats(place[BODY_B], BODY_FULL_WORDS)
+        total += dx * b[VX] + dy * b[VX + 1] + mb * b[SPIN]
+    if place[OWNER_A] != c:
+        a = floats(place[BODY_A], BODY_FULL_WORDS)
+        total -= dx * a[VX] + dy * a[VX + 1] + ma * a[SPIN]
+    return total
+
+
+@kernel
+def own_velocity(c, place, touch, row, velocity):  # type: ignore[no-untyped-def]
+    """What the bodies of structure ``c`` give to it, at its velocities (bodies, 3)."""
+    dx, dy, ma, mb = direction(touch, row)
+    total = 0.0
+    if place[OWNER_B] == c:
+        v = velocity[place[INDEX_B]]
+        total += dx * v[0] + dy * v[1] + mb * v[2]
+    if place[OWNER_A] == c:
+        v = velocity[place[INDEX_A]]
+        total -= dx * v[0] + dy * v[1] + ma * v[2]
+    return total
+
+
+@kernel
+def add_row(c, place, touch, row, amount, vector):  # type: ignore[no-untyped-def]
+    """Add ``amount`` of a row's unit impulse to the bodies of structure ``c`` in its ``vector``, (bodies, 3)."""
+    dx, dy, ma, mb = direction(touch, row)
+    if place[OWNER_B] == c:
+        x = vector[place[INDEX_B]]
+        x[0] += amount * dx
+        x[1] += amount * dy
+        x[2] += amount * mb
+    if place[OWNER_A] == c:
+        x = vector[place[INDEX_A]]
+        x[0] -= amount * dx
+        x[1] -= amount * dy
+        x[2] -= amount * ma
+
+
+@kernel
+def push_loose(place, touch, row, amount, offset, spin):  # type: ignore[no-untyped-def]
+    """Give a row's impulse to the loose body of a contact, if it has one; velocities at ``offset`` and ``spin``."""
+    dx, dy, ma, mb = direction(touch, row)
+    if place[OWNER_B] == 0:
+        b = floats(place[BODY_B], BODY_FULL_WORDS)
+        b[offset] += amount * dx * b[MASS_INVERSE]
+        b[offset + 1] += amount * dy * b[MASS_INVERSE]
+        b[spin] += amount * mb * b[MOMENT_INVERSE]
+    if place[OWNER_A] == 0:
+        a = floats(place[BODY_A], BODY_FULL_WORDS)
+        a[offset] -= amount * dx * a[MASS_INVERSE]
+        a[offset + 1] -= amount * dy * a[MASS_INVERSE]
+        a[spin] -= amount * ma * a[MOMENT_INVERSE]

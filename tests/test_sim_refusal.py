@@ -1,0 +1,167 @@
+"""Steps that are refused: nothing has changed, the error names joint and cause, and the run goes on from there."""
+
+import math
+from collections.abc import Callable
+from dataclasses import astuple
+
+import numpy as np
+import pymunk
+import pytest
+from hard_cases import Case, chain, law
+
+from sim import DuctileJoint, SolverError, Structure
+from sim.compiling import law_function
+from sim.kernels import layout as at
+from sim.memory import floats
+
+
+def struck() -> Case:
+    """A bar that yields under a ball, in the middle of the blow; two bodies hang from a pin beside it."""
+    case = chain(8, law(strength=0.05), shapes=True)
+    space = case.space
+    for _ in range(10):
+        space.step(1 / 60)
+    ball = pymunk.Body(8.0, 0.01)
+    ball.position, ball.velocity = case.bodies[6].position + pymunk.Vec2d(0.0, 0.35), (0.0, -15.0)
+    hung = [pymunk.Body(1.0, 1.0) for _ in range(2)]
+    hung[0].position, hung[1].position = (3.0, 3.0), (4.0, 3.0)
+    space.add(ball, pymunk.Circle(ball, 0.05), *hung, pymunk.PinJoint(*hung))
+    space.add(pymunk.PivotJoint(space.static_body, hung[0], (2.0, 3.0)))
+    case.bodies.append(ball)
+    for _ in range(2):
+        space.step(1 / 60)
+    return case
+
+
+def everything(case: Case) -> list[np.ndarray]:
+    """All that the next step depends on, as far as there is a name for it."""
+    structure = case.structure
+    bodies = [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in case.space.bodies]
+    of_joints = [structure.force, structure.plastic_deformation, structure.dissipated, structure.deformation]
+    return [np.array(bodies), *of_joints, structure.tables._states.copy(), np.array(astuple(structure.energy))]
+
+
+def without_bound(case: Case) -> None:
+    case.bodies[4].force = (math.inf, 0.0)
+
+
+def too_far(case: Case) -> None:
+    case.bodies[4].force = (1e200, 0.0)
+
+
+def no_number(case: Case) -> None:
+    case.bodies[4].torque = math.nan
+
+
+@pytest.mark.parametrize("spoil", [without_bound, too_far, no_number])
+def test_a_refused_step_leaves_the_whole_space_as_it_was(spoil: Callable[[Case], None]) -> None:
+    case = struck()
+    assert case.structure.tables.control[at.PARTS] > 1, "the blow is to be on"
+    before, twin = everything(case), case.space.copy()
+    spoil(case)
+    with pytest.raises(SolverError, match=r"joint 4 .*not finite: a body of it has a force of"):
+        case.space.step(1 / 60)
+    for now, then in zip(everything(case), before, strict=True):
+        np.testing.assert_array_equal(now, then)
+    for _ in range(20):
+        case.space.step(1 / 60)
+        twin.step(1 / 60)
+    for body, other in zip(case.space.bodies, twin.bodies, strict=True):
+        np.testing.assert_allclose(body.position, other.position, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("step", [-1 / 60, math.nan, math.inf])
+def test_a_step_that_is_none_is_refused(step: float) -> None:
+    case = chain(5)
+    for _ in range(10):
+        case.space.step(1 / 60)
+    before = everything(case)
+    with pytest.raises(SolverError, match=r"a step of .* s cannot be taken; give one above 0"):
+        case.space.step(step)
+    for now, then in zip(everything(case), before, strict=True):
+        np.testing.assert_array_equal(now, then)
+    case.space.step(0.0)
+    case.space.step(1 / 60)
+    assert np.isfinite(case.structure.force).all()
+
+
+@law_function
+def respond(parameters, state, deformation, out):  # type: ignore[no-untyped-def]  # noqa: ARG001
+    """An elastic law that knows no force from a limit of slip on."""
+    p, q, r = floats(parameters, 2), floats(deformation, 3), floats(out, 9)
+    for i in range(9):
+        r[i] = 0.0
+    for i in range(3):
+        r[i] = p[0] * q[i]
+    r[3], r[6], r[8] = p[0], p[0], p[0]
+    if abs(q[1]) > p[1]:
+        r[1] = np.nan
+
+
+@law_function
+def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
+    p, q, s, r = floats(parameters, 2), floats(deformation, 3), floats(state, 1), floats(out, 5)
+    s[0] += 1.0
+    r[0] = 0.5 * p[0] * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
+    for i in range(1, 5):
+        r[i] = 0.0
+
+
+class Fails:
+    """What no law should do; its state counts how often it was committed."""
+
+    name, yields_by = "fails", ("", "", "")
+    respond_address, commit_address = respond, commit
+
+    def __init__(self, stiffness: float, limit: float) -> None:
+        self.stiffness, self.limit = stiffness, limit
+
+    def parameters(self) -> np.ndarray:
+        return np.array([self.stiffness, self.limit])
+
+    def state(self) -> np.ndarray:
+        return np.zeros(1)
+
+    def elastic_tangent(self) -> tuple[float, float, float, float, float, float]:
+        return (self.stiffness, 0.0, 0.0, self.stiffness, 0.0, self.stiffness)
+
+    def capacities(self) -> tuple[float, float, float]:
+        return math.inf, math.inf, math.inf
+
+
+def test_what_fails_in_a_later_part_of_a_step_takes_the_earlier_ones_along() -> None:
+    """A ball falls on a body on one joint, whose law fails once it has given way by 5 mm: some parts into the step."""
+    space = pymunk.Space()
+    space.collision_slop = 1e-4
+    body, ball = pymunk.Body(5.0, 0.1), pymunk.Body(5.0, 0.1)
+    ball.position, ball.velocity = (0.5, 0.2), (0.0, -4.0)
+    joint = DuctileJoint(space.static_body, body, (0.0, 0.0), Fails(1e5, 5e-3), direction=0.0)
+    space.add(body, pymunk.Poly.create_box(body, (1.0, 0.1)), ball, pymunk.Circle(ball, 0.1), joint)
+    case = Case(space, Structure([joint]))
+    before: list[np.ndarray] = []
+
+    def run() -> None:
+        for _ in range(60):
+            before[:] = everything(case)
+            space.step(1 / 60)
+
+    with pytest.raises(SolverError, match="joint 0"):
+        run()
+    assert case.structure.tables[at.COPY].any(), "some of its parts were taken"
+    for now, then in zip(everything(case), before, strict=True):
+        np.testing.assert_allclose(now, then, rtol=0.0, atol=1e-14)
+
+
+def test_the_error_of_structures_that_touch_comes_once() -> None:
+    space = chain(4, shapes=True).space
+    upper = pymunk.Body(3.0, 0.1)
+    upper.position = (0.08, 0.1)
+    plate = pymunk.Poly.create_box(upper, (0.16, 0.1))
+    space.add(upper, plate, DuctileJoint(space.static_body, upper, (0.0, 0.1), law(), direction=0.0))
+    for _ in range(30):
+        space.step(1 / 60)
+    upper.force = (0.0, -math.inf)
+    with pytest.raises(SolverError):
+        space.step(1 / 60)
+    for _ in range(3):
+        space.step(1 / 60)

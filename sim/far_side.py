@@ -8,7 +8,7 @@ have gone since, by which structures know when that was (`sim.kernels.late`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import numpy as np
 import pymunk
@@ -39,28 +39,44 @@ _RESTITUTION = 0
 _MOST_ADVANCES = 60
 
 
-def turn_round(bodies: Iterable[pymunk.Body], step: float) -> None:
-    """Give the contacts of ``bodies`` that are marked the side they came from; where none is found they stay."""
-    for body in bodies:
-        for arbiter in arbiters_of(body):
-            w = words(arbiter, ARBITER_WORDS, np.int64)
-            first, count = int(w[ARBITER_CONTACTS]), int(w[ARBITER_COUNT]) & 0xFFFFFFFF
-            contacts = [words(first + CONTACT_BYTES * k, CONTACT_WORDS) for k in range(count)]
-            if any(contact[CONTACT_NORMAL_MASS] == -1.0 for contact in contacts):
-                for contact in contacts:
-                    contact[CONTACT_NORMAL_MASS] = 1.0
-                assert body.space is not None
-                if _turn(arbiter, contacts[0], body.space, step):
-                    w[ARBITER_COUNT] = (int(w[ARBITER_COUNT]) & ~0xFFFFFFFF) | 1
+def turn_round(bodies: Sequence[pymunk.Body], step: float) -> None:
+    """Give the contacts of ``bodies`` that are marked the side they came from; where none is found they stay.
+
+    All others of a loose body that came from elsewhere are looked into, too: they would lead it out sideways.
+    """
+    marked = {arbiter: body.space for body in bodies for arbiter in arbiters_of(body) if _is_marked(arbiter)}
+    for arbiter, space in list(marked.items()):
+        for word in (ARBITER_SHAPE_A, ARBITER_SHAPE_B):
+            other = shape_at(int(words(arbiter, ARBITER_WORDS, np.int64)[word])).body
+            assert other is not None
+            if other not in bodies and other.body_type == pymunk.Body.DYNAMIC:
+                marked |= dict.fromkeys(arbiters_of(other), space)
+    for arbiter, space in marked.items():
+        assert space is not None
+        _turn(arbiter, space, step)
 
 
-def _turn(arbiter: int, contact: np.ndarray, space: pymunk.Space, step: float) -> bool:
-    """Write the first touch of an arbiter's two shapes into its first contact, if there was one in this step."""
+def _contacts(arbiter: int) -> list[np.ndarray]:
     w = words(arbiter, ARBITER_WORDS, np.int64)
+    first, count = int(w[ARBITER_CONTACTS]), int(w[ARBITER_COUNT]) & 0xFFFFFFFF
+    return [words(first + CONTACT_BYTES * k, CONTACT_WORDS) for k in range(count)]
+
+
+def _is_marked(arbiter: int) -> bool:
+    return any(contact[CONTACT_NORMAL_MASS] == -1.0 for contact in _contacts(arbiter))
+
+
+def _turn(arbiter: int, space: pymunk.Space, step: float) -> None:
+    """Make the first touch of an arbiter's two shapes its only contact, if there was one in this step."""
+    w = words(arbiter, ARBITER_WORDS, np.int64)
+    for contact in _contacts(arbiter):
+        contact[CONTACT_NORMAL_MASS] = 1.0
     a, b = (shape_at(int(w[word])) for word in (ARBITER_SHAPE_A, ARBITER_SHAPE_B))
     time = _touch_time(a, b, step, 0.01 * space.collision_slop)
     if time is None:
-        return False
+        return
+    w[ARBITER_COUNT] = (int(w[ARBITER_COUNT]) & ~0xFFFFFFFF) | 1
+    contact = _contacts(arbiter)[0]
     line = shapely.shortest_line(moved(a, time), moved(b, time))
     on_a, on_b = (pymunk.Vec2d(*point) for point in shapely.get_coordinates(line))
     normal = (on_b - on_a).normalized()
@@ -77,10 +93,9 @@ def _turn(arbiter: int, contact: np.ndarray, space: pymunk.Space, step: float) -
     contact[CONTACT_R1 : CONTACT_R1 + 2], contact[CONTACT_R2 : CONTACT_R2 + 2] = arm_a, arm_b
     f = words(arbiter, ARBITER_WORDS)
     f[ARBITER_NORMAL : ARBITER_NORMAL + 2] = normal
-    # As Chipmunk finds them.
     contact[CONTACT_BOUNCE] = (velocities[1] - velocities[0]).dot(normal) * f[_RESTITUTION]
-    contact[CONTACT_BIAS] = -(1.0 - space.collision_bias**step) * min(0.0, depth) / step
-    return True
+    # All of it at once, where the step is not taken in parts: the next one would find the wrong side again.
+    contact[CONTACT_BIAS] = -min(0.0, depth) / step
 
 
 def _touch_time(a: pymunk.Shape, b: pymunk.Shape, step: float, enough: float) -> float | None:

@@ -43,20 +43,6 @@ def test_a_fast_body_stays_on_its_side(speed: float, depth: float, box: bool, cl
         np.testing.assert_allclose(np.diff(momentum, axis=0), 0.0, atol=1e-12 * body.mass * speed)
 
 
-def test_a_fragment_stays_above_a_thin_floor() -> None:
-    """A structure that falls so fast that the middle of its pieces is below the line in one step."""
-    case = chain(6, clamped=False, gravity=0.0, shapes=True, y=1.0)
-    floor = pymunk.Segment(case.space.static_body, (-5.0, 0.0), (5.0, 0.0), 0.02)
-    case.space.add(floor)
-    speed = 30.0
-    for body in case.bodies:
-        body.position += (0.0, 3 * speed / 60 - 1.0 - 0.04)
-        body.velocity = (0.0, -speed)
-    for _ in range(10):
-        case.space.step(1 / 60)
-    assert all(body.position.y > 0.0 for body in case.bodies)
-
-
 def test_what_rolls_over_the_pieces_of_a_bar_is_not_stopped_between_them() -> None:
     case = chain(30, gravity=9.81, shapes=True)
     ball = pymunk.Body(1.0, 0.5 * 0.05**2)

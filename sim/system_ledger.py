@@ -156,6 +156,9 @@ class SystemLedger:
         if self._own:
             self._joints.note()
 
+    def __getstate__(self) -> None:
+        raise TypeError("a SystemLedger cannot be saved or copied; make one of the resumed space, which begins anew")
+
     def note(self) -> None:
         """Take note of a step; to be called after each."""
         if self._own:

@@ -2,10 +2,12 @@
 
 import itertools
 import math
+import random
 
 import numpy as np
 import pymunk
 import pytest
+from hard_cases import chain, law
 
 from capacity import capacity, parse_material, parse_section
 from sim import DuctileJoint, ElasticPlastic, Limits, Structure
@@ -248,3 +250,26 @@ def test_momentum_is_kept_in_a_collision_with_a_free_structure() -> None:
     # Contact points of the two bodies lie an overlap apart, as in Chipmunk itself.
     assert momenta()[2] == pytest.approx(before[2], abs=0.02 * abs(before[2]))
     assert structure.unconverged == 0
+
+
+@pytest.mark.parametrize("seed", [11, 24, 34, 47, 81, 120])
+def test_bodies_that_collide_while_a_blow_is_on_keep_momentum_and_create_no_energy(seed: int) -> None:
+    """Volleys into a free bar, in steps that are taken in parts; each body may touch others, too."""
+    draw = random.Random(seed)
+    space = chain(12, law(strength=10 ** draw.uniform(-3.0, 0.0)), clamped=False, gravity=0.0, shapes=True).space
+    for k in range(5):
+        mass = 10 ** draw.uniform(-1.0, 3.0)
+        body = pymunk.Body(mass, 0.002 * mass)
+        body.position = (draw.uniform(0.0, 0.5), 0.3 + 0.16 * k)
+        body.velocity = (draw.uniform(-5.0, 5.0), -(10 ** draw.uniform(-1.0, 1.5)))
+        shape = pymunk.Circle(body, 0.08) if k % 2 else pymunk.Poly.create_box(body, (0.15, 0.15))
+        shape.elasticity, shape.friction = draw.choice([0.0, 0.5]), draw.random()
+        space.add(body, shape)
+    begun = sum((body.mass * body.velocity for body in space.bodies), pymunk.Vec2d.zero())
+    energy = sum(body.kinetic_energy for body in space.bodies)
+    size = sum(body.mass * body.velocity.length for body in space.bodies)
+    for _ in range(60):
+        space.step(1 / 240)
+        now = sum((body.mass * body.velocity for body in space.bodies), pymunk.Vec2d.zero())
+        assert (now - begun).length < 1e-11 * size
+        assert sum(body.kinetic_energy for body in space.bodies) <= (1.0 + 1e-9) * energy

@@ -59,7 +59,7 @@ def compare_motion(scene: Scene, reference: MotionResult, course: Course, freque
     near = np.flatnonzero(
         np.abs(course.time - reference.peak_time) <= (0.25 / frequency if frequency > 0.0 else np.inf)
     )
-    swing = near[0] + extreme(np.maximum(np.sign(reference.peak) * course.displacement[near], 0.0))[1]
+    swing = int(near[0]) + extreme(np.maximum(np.sign(reference.peak) * course.displacement[near], 0.0))[1]
     history = np.interp(course.time, reference.time, reference.displacement) - course.displacement
     work = float(reference.plastic[-1])
     return MotionErrors(

@@ -29,7 +29,7 @@ _NOTHING = 1e-9
 _COARSEST = (20, 48, 500)
 #: Elements or steps are doubled when what they make of the estimate is more than this share of the tolerance, …
 _MATTERS = 1.0 / 3.0
-#: … as long as members × elements × steps stay below this: some ten seconds for the finest model.
+#: … or the larger of both alone, as long as members × elements × steps stay below this.
 _LARGEST = 320_000
 #: What a difference at any time counts for beside one of the peak: it is nearly all a matter of being a little early
 #: or late.
@@ -178,9 +178,13 @@ def motion(
             raise InputError("motion.direction", f'node "{node}" does not move that way', "watch another way or node")
         gaps = [_gaps(fine, other, node, direction) for other in others]
         by_elements, by_steps = (gap.size(of) / abs(peak) for gap in gaps)
+        if by_elements + by_steps <= tolerance:
+            break
         finer = (1 + (by_elements >= _MATTERS * tolerance), 1 + (by_steps >= _MATTERS * tolerance))
-        cost = len(scene.members) * elements * steps * finer[0] * finer[1]
-        if by_elements + by_steps <= tolerance or cost > _LARGEST:
+        size = len(scene.members) * elements * steps
+        if size * finer[0] * finer[1] > _LARGEST:
+            finer = (2, 1) if by_elements > by_steps else (1, 2)
+        if size * finer[0] * finer[1] > _LARGEST:
             break
         elements, steps = finer[0] * elements, finer[1] * steps
     balance = fine.energies @ (1.0, 1.0, 1.0, -1.0)

@@ -105,7 +105,9 @@ def follow(scene: Scene, model: Model, watch: Callable[[float], None] = lambda s
     if asked is None:
         raise InputError("motion", "the scene has none", 'add [motion] with duration = "0.2 s"')
     assembly = assemble(scene, model, shapes=False)
+    assembly.structure.scheme = IMPLICIT_EULER
     settle(scene, assembly, 1e-12)
+    assembly.structure.scheme = model.scheme
     set_going(scene, asked, assembly)
     steps = max(1, round(float(asked.duration) / model.dt))
     start = {name: np.array(node.now()) for name, node in assembly.nodes.items()}

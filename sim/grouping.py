@@ -37,7 +37,7 @@ def _group(space: pymunk.Space) -> None:
 
     for joint in joints:
         ends = [body for body in (joint.a, joint.b) if body.body_type == pymunk.Body.DYNAMIC]
-        if any(body.space is None for body in ends):
+        if any(body.space is not space for body in ends):
             x, y = joint.at
             raise InputError(f"joint at {x:g}, {y:g}", "a body of it is not in the space", "space.add(body)")
         if len(ends) == 2:
@@ -48,7 +48,7 @@ def _group(space: pymunk.Space) -> None:
         groups.setdefault(root(body), []).append(joint)
     for members in groups.values():
         old = members[0].structure
-        if old is not None and set(old.joints) == set(members):
+        if old is not None and set(old.joints) == set(members) and old.knows_what_moves:
             for joint in members:
                 joint.pre_solve = None
         else:

@@ -172,6 +172,12 @@ class Structure(Readings):
             if asks:
                 joint.ask_for_structure()
 
+    @property
+    def knows_what_moves(self) -> bool:
+        """Whether the bodies that were dynamic when the structure was built still are, and no others."""
+        moving = int(self._control[at.MOVING])
+        return all((b.body_type == pymunk.Body.DYNAMIC) == (i < moving) for i, b in enumerate(self.bodies))
+
     def change_law(self, joint: int, law: Law) -> None:
         """Give a joint new numbers for the law it has; its plastic state stays.
 

@@ -13,13 +13,16 @@ from matplotlib.figure import Figure
 from calibration.export import joint_table, settings
 from calibration.figures import FAINT, MODEL, REFERENCE, STYLE
 from calibration.fitting import Fit, LoadCase, fit
+from calibration.motion_tuning import REFERENCE_MARGIN as MOTION_MARGIN
 from calibration.page import report_page
 from calibration.parameters import BOUNDS, Name, check_parameters, fitted
 from calibration.report import report_markdown
 from calibration.sheets import Picture, Report, percent
 from calibration.tables import fit_sheets, in_words, joint_sheet, stepping
+from calibration.tuning import REFERENCE_MARGIN
 from calibration.versions import versions
 from capacity import InputError
+from fem_reference import default_tolerance
 from scene import Scene
 from sim import Model
 
@@ -38,12 +41,22 @@ class FitAnswer:
     @property
     def error(self) -> float:
         """Largest error of all load cases, those that the fit did not see among them [-]."""
-        return max(self.fit.worst, *(after for _, after in self.fit.checks.values()))
+        return max([self.fit.worst, *(after for _, after in self.fit.checks.values())])
+
+    @property
+    def limit(self) -> str:
+        """What keeps the target from being met, in words; empty when it is."""
+        for case in (*self.cases, *self.checks):
+            if case.uncertainty > needed(case.scene, self.target_error):
+                return f"the reference of {case.name} itself is only known within {percent(case.uncertainty, 2)}"
+        if self.error <= self.target_error:
+            return ""
+        return "the parameters that were varied leave that much; vary others, or take finer joints"
 
     @property
     def report(self) -> Report:
         """The verdict, tables and figures."""
-        found, met = self.fit, self.error <= self.target_error
+        found, met = self.fit, not self.limit
         unseen = ", ".join(f"{percent(after)} ({percent(before)} without)" for before, after in found.checks.values())
         words = f"{len(found.parameters)} parameters of {in_words(found.model, self.cases[0].scene.members)} "
         words += f"({stepping(found.model)}) fitted to {len(self.cases)} load cases: off by {percent(found.worst)} at "
@@ -61,7 +74,7 @@ class FitAnswer:
             scene=", ".join(case.name for case in self.cases),
             met=met,
             verdict=("Target met" if met else "Target missed", words),
-            limit="" if met else "the parameters that were varied leave that much; vary others, or take finer joints",
+            limit=self.limit,
             remarks=tuple(remarks),
             sheets=(*fit_sheets(found), joint_sheet(scene, model)),
             pictures=tuple(Picture(f"{case.name}, {kind}", self._curves(case), _CAPTION) for case, kind in shown),
@@ -91,14 +104,13 @@ class FitAnswer:
 
     def whole(self) -> dict[str, Any]:
         """The fit as one object for JSON; SI units."""
-        met = self.error <= self.target_error
         return {
             "scenes": [case.name for case in self.cases],
             "weights": [case.weight for case in self.cases],
             **asdict(self.fit),
             "model": settings(self.fit.model),
             "target_error": self.target_error,
-            "target_met": met,
+            "target_met": not self.limit,
             "versions": versions(),
         }
 
@@ -132,14 +144,24 @@ def answer(
     solved = []
     for i, (name, scene) in enumerate((*scenes, *checks)):
         watch(f"reference of {name}", i / (len(scenes) + len(checks) + 2))
-        solved.append(LoadCase.solve(name, scene))
+        solved.append(LoadCase.solve(name, scene, tolerance=wanted(scene, target_error)))
     cases = [replace(case, weight=weight) for case, weight in zip(solved, weights, strict=False)]
     unseen = solved[len(scenes) :]
     if not unseen:
         watch("reference of a load case that the fit does not see", 0.6)
-        unseen = [LoadCase.unseen(scenes[0][1])]
+        unseen = [LoadCase.unseen(scenes[0][1], wanted(scenes[0][1], target_error))]
     watch("fitting", 0.8)
     return FitAnswer(fit(cases, model, names, unseen, bounds), tuple(cases), tuple(unseen), target_error)
+
+
+def needed(scene: Scene, target_error: float) -> float:
+    """How well the reference of ``scene`` must be known to judge by it [-]: as for a calibration."""
+    return target_error / (REFERENCE_MARGIN if scene.motion is None else MOTION_MARGIN)
+
+
+def wanted(scene: Scene, target_error: float) -> float:
+    """How well it is asked to know itself [-]."""
+    return min(needed(scene, target_error), default_tolerance(scene))
 
 
 def parameter_names(text: str) -> list[Name]:

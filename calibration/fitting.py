@@ -21,7 +21,7 @@ from scipy.optimize import least_squares
 from calibration.comparable_motion import follow_model
 from calibration.comparable_push import push_model
 from calibration.parameters import BOUNDS, Name, check_parameters, fitted
-from fem_reference import PushAnswer, motion, push_over
+from fem_reference import PushAnswer, default_tolerance, motion, push_over
 from scene import Scene
 from scene.quantities import Force, ForcePerLength, Length, Moment, Speed
 from sim import IMPLICIT_EULER, Model
@@ -48,6 +48,8 @@ class LoadCase:
         Loads [N], or displacements of the watched node [m].
     weight : float
         Of this case among others.
+    uncertainty : float
+        Estimated error of the values, over the largest of them [-].
     """
 
     name: str
@@ -55,28 +57,32 @@ class LoadCase:
     points: np.ndarray
     values: np.ndarray
     weight: float = 1.0
+    uncertainty: float = 0.0
 
     @classmethod
     def of_push(cls, name: str, scene: Scene, reference: PushAnswer, weight: float = 1.0) -> LoadCase:
         """A push that its reference has followed."""
-        return cls(name, scene, reference.displacement, reference.load, weight)
+        return cls(name, scene, reference.displacement, reference.load, weight, reference.error_estimate)
 
     @classmethod
-    def solve(cls, name: str, scene: Scene, weight: float = 1.0) -> LoadCase:
-        """``scene``, followed by the reference that it asks for: a push, cycles or a motion."""
+    def solve(cls, name: str, scene: Scene, weight: float = 1.0, tolerance: float | None = None) -> LoadCase:
+        """``scene``, followed by the reference that it asks for: a push, cycles or a motion.
+
+        ``tolerance`` is the uncertainty that is aimed at; that of `fem_reference.default_tolerance` when left out.
+        """
         if scene.motion is None:
-            return cls.of_push(name, scene, push_over(scene), weight)
-        course = motion(scene)
-        return cls(name, scene, course.time, course.displacement, weight)
+            return cls.of_push(name, scene, push_over(scene, tolerance), weight)
+        course = motion(scene, default_tolerance(scene) if tolerance is None else tolerance)
+        return cls(name, scene, course.time, course.displacement, weight, course.error_estimate)
 
     @classmethod
-    def unseen(cls, scene: Scene) -> LoadCase:
+    def unseen(cls, scene: Scene, tolerance: float | None = None) -> LoadCase:
         """What a fit to ``scene`` has not seen: pushed half as far and back, or set going half as hard."""
         struct = msgspec.structs.replace
         if scene.pushed is not None:
             half = 0.5 * max(map(abs, scene.push.stops()))
             push = struct(scene.push, distance=Length(0.0), turning_points=(Length(half), Length(-half)), unload=False)
-            return cls.solve("half as far and back", struct(scene, pushed=push))
+            return cls.solve("half as far and back", struct(scene, pushed=push), tolerance=tolerance)
         motion = scene.motion
         assert motion is not None
         halved = struct(
@@ -95,7 +101,7 @@ class LoadCase:
                 for load in scene.loads
             ),
         )
-        return cls.solve("set going half as hard", halved)
+        return cls.solve("set going half as hard", halved, tolerance=tolerance)
 
     def residuals(self, model: Model, parameters: Mapping[Name, float]) -> np.ndarray:
         """Model less reference over the largest value of the reference, (k,) [-]."""

@@ -35,7 +35,7 @@ BOUNDS: dict[Name, tuple[float, float, float]] = {
     "stiffness": (1.0, 0.5, 1.5),
     "strength": (1.0, 0.5, 2.0),
     "spread": (0.1, 0.0, 0.6),
-    "hardening": (0.01, 0.0, 0.1),
+    "hardening": (0.01, 0.0, 0.2),
     "reserve": (0.1, 0.0, 0.5),
     "hinge_length": (1.0, 0.25, 4.0),
     "damping": (1e-3, 0.0, 0.02),

@@ -1,11 +1,18 @@
 """``ductile fit``: load cases together, bounds, a case that the fit does not see, and what it refuses."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from cantilevers import cantilever
 from frames import frame_text
 from test_cli import ductile
+
+from calibration.fit_command import FitAnswer
+from calibration.fitting import LoadCase, fit
+from sim import Model
 
 SOFT = "fy=235 MPa, E=210 GPa, rho=7850 kg/m^3, Et=2.1 GPa"
 
@@ -46,6 +53,20 @@ def test_a_hinge_is_fitted_to_pushes_and_cycles_and_checked_on_another(
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "at its bound" in page
     assert "not seen by the fit" in page
+
+
+def test_a_reference_that_is_not_known_well_enough_decides_nothing() -> None:
+    """Whatever the fit comes to: the model is the reference's own here, and its error next to nothing."""
+    scene = cantilever("rectangle 50x100 mm", 1.0, 0.01)
+    points = np.linspace(0.0, 0.01, 12)
+    model = Model("lobatto", 3, "elastic-plastic")
+    case = LoadCase("own", scene, points, np.ones_like(points), uncertainty=0.003)
+    case = replace(case, values=case.residuals(model, {}) + 1.0)
+    found = fit([case], model, ("stiffness",))
+    vague, good = (FitAnswer(found, (case,), (), target) for target in (0.01, 0.02))
+    assert "only known within 0.3 %" in vague.limit
+    assert not vague.whole()["target_met"]
+    assert good.limit == ""
 
 
 @pytest.mark.parametrize(

@@ -107,4 +107,4 @@ def fit(
     else:
         print_report(found.report, Console())
     folder.announce(messages)
-    return 0 if found.error <= target else 1
+    return 1 if found.limit else 0

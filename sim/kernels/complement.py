@@ -8,8 +8,6 @@ H for each structure with its present tangents and M_e for loose bodies. Per con
 normal n and tangent t, restitution and friction are
 
     j_n ≥ 0,  v_n ≥ v_bounce,  one of them with equality;   |j_t| ≤ μ j_n,  v_t = 0 unless at the limit.
-
-Overlap is taken out by pseudo-velocities that move the bodies once and carry no momentum, through the structures, too.
 """
 
 import math
@@ -17,8 +15,6 @@ import math
 import numpy as np
 
 from sim.chipmunk import (
-    BIAS_SPIN,
-    BIAS_VX,
     BODY_FULL_WORDS,
     CONTACT_NORMAL_IMPULSE,
     CONTACT_TANGENT_IMPULSE,
@@ -31,7 +27,6 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import factorise_matrix, solve
-from sim.kernels.kinematics import rates
 from sim.kernels.layout import (
     BODY_A,
     BODY_B,
@@ -40,25 +35,18 @@ from sim.kernels.layout import (
     INDEX_B,
     INVERSE_I,
     INVERSE_M,
-    LEDGER_CONTACT,
-    LEDGER_KINETIC,
-    LEDGER_NUMERICAL,
     OWNER_A,
     OWNER_B,
-    PUSH,
     STEP,
     SURFACE,
     WANTED,
     WHERE,
-    WHOLE_STEP,
 )
+from sim.kernels.overlap import MOST_SWEEPS, push_apart
 from sim.kernels.residual import advance, linearise, reach_of
-from sim.kernels.rows import add_row, direction, other_velocity, own_velocity, push_loose
+from sim.kernels.rows import add_row, direction, other_velocity, own_velocity, push_loose, sum_up
 from sim.memory import clear, floats, kernel
 
-_SWEEPS = 200
-# Of the kinetic energy.
-_FREE = 1e-9
 #: What `touch` gives when an impulse is not a number: nothing was changed then.
 NOT_FINITE = -1.0
 
@@ -178,7 +166,7 @@ def operator(places, touches):  # type: ignore[no-untyped-def]
 def complement(places, touches, g, v, change):  # type: ignore[no-untyped-def]
     """Projected Gauss–Seidel on G; changes the accumulated impulses, returns the largest change over them."""
     rows = len(v)
-    for _ in range(_SWEEPS):
+    for _ in range(MOST_SWEEPS):
         moved, size = 0.0, 0.0
         for r in range(rows):
             if g[r, r] <= 0.0:
@@ -230,89 +218,3 @@ def strike(c, t, places, touches, change):  # type: ignore[no-untyped-def]
     solve(t, 0, solution)
     linearise(t, views.settings(t)[STEP] * reach_of(t), 0.0)
     advance(t, 1.0)
-
-
-@kernel
-def sum_up(c, places, touches, amounts, out):  # type: ignore[no-untyped-def]
-    """J_cᵀ times impulses of the rows, on the bodies of structure ``c``."""
-    clear(out)
-    for r in range(len(amounts)):
-        add_row(c, places[r >> 1], touches[r >> 1], r, amounts[r], out)
-
-
-@kernel
-def push_apart(head, places, touches, g, v, change):  # type: ignore[no-untyped-def]
-    """Pseudo-velocities that take out overlap, through the structures."""
-    any_overlap = False
-    for k in range(len(places)):
-        v[2 * k], v[2 * k + 1] = 0.0, 0.0
-        change[2 * k], change[2 * k + 1] = 0.0, 0.0
-        any_overlap = any_overlap or touches[k, PUSH] > 0.0
-    if not any_overlap:
-        return
-    for _ in range(_SWEEPS):
-        moved, size = 0.0, 0.0
-        for r in range(0, len(v), 2):
-            if g[r, r] <= 0.0:
-                continue
-            new = max(change[r] + (touches[r >> 1, PUSH] - v[r]) / g[r, r], 0.0)
-            step = new - change[r]
-            size = max(size, new)
-            if step != 0.0:
-                moved = max(moved, abs(step))
-                change[r] = new
-                for k in range(0, len(v), 2):
-                    v[k] += g[k, r] * step
-        if moved <= 1e-6 * size:
-            break
-    share = share_to_push(head, places, touches, change)
-    for r in range(0, len(v), 2):
-        push_loose(places[r >> 1], touches[r >> 1], r, share * change[r], BIAS_VX, BIAS_SPIN)
-    c = head
-    while c != 0:
-        t = views.control(c)
-        solution, body_at = views.per_body(t, at.SOLUTION), views.body_at(t)
-        for i in range(t[at.MOVING]):
-            b = floats(body_at[i], BODY_FULL_WORDS)
-            b[BIAS_VX] += share * solution[i, 0]
-            b[BIAS_VX + 1] += share * solution[i, 1]
-            b[BIAS_SPIN] += share * solution[i, 2]
-        c = t[at.NEXT]
-
-
-@kernel
-def share_to_push(head, places, touches, change):  # type: ignore[no-untyped-def]
-    """What share of the pseudo-impulses ``change`` may act; leaves the pseudo-velocities of all of it in the solutions.
-
-    Taking out overlap strains the joints, and must not do more elastic work on them than the structures have lost so
-    far: a body that has come to lie between two pieces would wedge them apart with energy that nothing has given.
-    """
-    work, lost, c = 0.0, 0.0, head
-    while c != 0:
-        t = views.control(c)
-        solution, ledger = views.per_body(t, at.SOLUTION), views.ledger(t)
-        sum_up(c, places, touches, change, solution)
-        solve(t, 0, solution)
-        work += work_to_shift(t, solution, views.settings(t)[WHOLE_STEP])
-        # A shift of all that strains nothing but by rounding is free.
-        lost += ledger[LEDGER_CONTACT] + ledger[LEDGER_NUMERICAL] + _FREE * ledger[LEDGER_KINETIC]
-        c = t[at.NEXT]
-    return math.sqrt(max(lost, 0.0) / work) if work > lost else 1.0
-
-
-@kernel
-def work_to_shift(t, velocity, h):  # type: ignore[no-untyped-def]
-    """Elastic energy that moving at ``velocity`` for a time ``h`` stores in joints that bear nothing [J]."""
-    joint_bodies, gradient, stiffness, active = (
-        views.joint_bodies(t),
-        views.gradient(t),
-        views.stiffness(t),
-        views.active(t),
-    )
-    work = 0.0
-    for k in range(t[at.JOINTS]):
-        if active[k]:
-            x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
-            along = x * (stiffness[k, 0] * x + 2.0 * (stiffness[k, 1] * y + stiffness[k, 2] * z))
-            work += along + y * (stiffness[k, 3] * y + 2.0 * stiffness[k, 4] * z) + z * stiffness[k, 5] * z
-    return 0.5 * h * h * work

@@ -2,7 +2,7 @@
 
 from sim.chipmunk import BODY_FULL_WORDS, MASS_INVERSE, MOMENT_INVERSE, SPIN, VX
 from sim.kernels.layout import ARM_A, ARM_B, BODY_A, BODY_B, INDEX_A, INDEX_B, NORMAL, OWNER_A, OWNER_B
-from sim.memory import floats, kernel
+from sim.memory import clear, floats, kernel
 
 
 @kernel
@@ -72,3 +72,11 @@ def push_loose(place, touch, row, amount, offset, spin):  # type: ignore[no-unty
         a[offset] -= amount * dx * a[MASS_INVERSE]
         a[offset + 1] -= amount * dy * a[MASS_INVERSE]
         a[spin] -= amount * ma * a[MOMENT_INVERSE]
+
+
+@kernel
+def sum_up(c, places, touches, amounts, out):  # type: ignore[no-untyped-def]
+    """J_cᵀ times impulses of the rows, on the bodies of structure ``c``."""
+    clear(out)
+    for r in range(len(amounts)):
+        add_row(c, places[r >> 1], touches[r >> 1], r, amounts[r], out)

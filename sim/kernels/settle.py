@@ -7,10 +7,11 @@ import numpy as np
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.commit import weaken
-from sim.kernels.complement import NOT_FINITE, gather_contacts, sum_up, touch
+from sim.kernels.complement import NOT_FINITE, gather_contacts, touch
 from sim.kernels.layout import CACHED, INERTIA_I, INERTIA_M
 from sim.kernels.newton import iterate
 from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
+from sim.kernels.rows import sum_up
 from sim.memory import kernel
 
 _MOST_ROUNDS = 40

@@ -161,7 +161,7 @@ def _body(body: pymunk.Body, label: str, span: tuple[float, float] | None) -> di
 
 def _joint(joint: DuctileJoint, names: dict[pymunk.Body, str]) -> dict[str, Any]:
     tangent = joint.law.elastic_tangent()
-    law = {key: _plain(value) for key, value in asdict(joint.law).items()}  # type: ignore[call-overload]
+    law = _plain(asdict(joint.law))  # type: ignore[call-overload]
     return {
         "a": names[joint.a],
         "b": names[joint.b],
@@ -187,9 +187,12 @@ def _place(place: Any) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
+    """As JSON has it: lists for arrays, null for what is endless."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, tuple):
+        return _plain(value.tolist())
+    if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 

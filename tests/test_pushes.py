@@ -1,5 +1,6 @@
 """Pushes that are slow enough for what they push, and that end where a second path branches off."""
 
+import json
 import math
 
 import numpy as np
@@ -9,6 +10,7 @@ from frames import down, frame_scene, push_towards
 import sim
 from calibration import calibrate
 from calibration.comparable_push import push_model
+from calibration.export import joint_table
 from capacity import InputError
 from fem_reference import NotConverged, branches_at, pushover
 from scene import Scene
@@ -85,3 +87,9 @@ def test_heavy_nodes_are_pushed_slowly() -> None:
     assert off[1] < 2e-3
     assert pushes[1].inertia <= 1e-3
     assert sim.PACE.duration == pushes[0].duration < pushes[1].duration
+
+
+@pytest.mark.parametrize("law", sim.LAWS)
+def test_joints_of_every_law_can_be_handed_over_as_json(law: str) -> None:
+    table = joint_table(column("free", (1, 0), 0.01), Model("lobatto", 3, law))
+    assert json.loads(json.dumps(table, allow_nan=False)) == table

@@ -92,4 +92,4 @@ def test_heavy_nodes_are_pushed_slowly() -> None:
 @pytest.mark.parametrize("law", sim.LAWS)
 def test_joints_of_every_law_can_be_handed_over_as_json(law: str) -> None:
     table = joint_table(column("free", (1, 0), 0.01), Model("lobatto", 3, law))
-    assert json.loads(json.dumps(table, allow_nan=False)) == table
+    assert json.loads(json.dumps(table, allow_nan=False))["joints"] == table["joints"]

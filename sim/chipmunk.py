@@ -39,9 +39,9 @@ BODY_FULL_WORDS = 31
 SLEEP_ROOT, SLEEP_NEXT, IDLE_TIME = 31, 32, 33
 _SLEEP_WORDS = 34
 
-# cpSpace: how much shapes may overlap; lists of bodies that move, of the first ones of those that sleep, of constraints
-# and of arbiters; the trees of shapes, static ones first.
-SPACE_SLOP = 6
+# cpSpace: gravity, and how much shapes may overlap; lists of bodies that move, of the first ones of those that sleep,
+# of constraints and of arbiters; the trees of shapes, static ones first.
+SPACE_GRAVITY, SPACE_SLOP = 1, 6
 MOVING_BODIES, SLEEPING_ROOTS, CONSTRAINTS_OF_SPACE, ARBITERS_OF_SPACE = 12, 15, 19, 20
 SPACE_SHAPES, SPACE_WORDS = 17, 21
 # Between them, for `verify` alone: how many steps there were, and how many shapes.
@@ -71,7 +71,7 @@ CONTACT_WORDS, CONTACT_BYTES = 12, 96
 # joint's anchors, which nobody reads once its functions are replaced.
 CONSTRAINT_CLASS = 0
 CONSTRAINT_SPACE = 1
-CONSTRAINT_BODY_A, _BODY_B = 2, 3
+CONSTRAINT_BODY_A, CONSTRAINT_BODY_B = 2, 3
 CONSTRAINT_NEXT_A, CONSTRAINT_NEXT_B = 4, 5
 CONTROL = 13
 CONSTRAINT_WORDS = 15
@@ -229,6 +229,18 @@ def cached_impulse(constraint: pymunk.Constraint) -> np.ndarray:
     return words(address(constraint._constraint), first + count)[first:]
 
 
+def stock_kinds() -> np.ndarray:
+    """Chipmunk's own constraints that only hold: function table, their impulse's first word, and how many, (n, 3)."""
+    a, b = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    return np.array(
+        [
+            (words(address(c._constraint), 1, np.int64)[CONSTRAINT_CLASS], *CACHED_IMPULSE[type(c)])
+            for c in _one_of_each(a, b)
+            if not isinstance(c, pymunk.SimpleMotor)
+        ]
+    )
+
+
 def verify() -> None:
     """Check every offset against the installed pymunk.
 
@@ -257,7 +269,7 @@ def verify() -> None:
     bodies = words(location, CONTROL, np.int64)
     fits &= bool(np.array_equal(anchors, [29.0, 31.0, 37.0, 41.0]))
     space = pymunk.Space()
-    space.collision_slop = 43.0
+    space.collision_slop, space.gravity = 43.0, (67.0, 71.0)
     space.add(body, other, joint)
     fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[BODY_SPACE] == address(space._space)
     fits &= words(address(space._space), SPACE_WORDS)[SPACE_SLOP] == 43.0
@@ -265,6 +277,7 @@ def verify() -> None:
     lib.cpSpaceSetShapeIDCounter(space._space, 59)
     numbers = words(address(space._space), SPACE_WORDS, np.int64)
     fits &= numbers[_SPACE_STAMP] & 0xFFFFFFFF == 53 and numbers[_SPACE_SHAPE_COUNTER] == 59
+    fits &= bool(np.array_equal(words(address(space._space), SPACE_WORDS)[SPACE_GRAVITY:][:2], [67.0, 71.0]))
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == address(space._space)
     fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[CONSTRAINTS] == location
     second = pymunk.PivotJoint(other, body, (0.0, 0.0))
@@ -274,7 +287,7 @@ def verify() -> None:
     space.remove(second)
     space.remove(joint)
     fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == 0
-    fits &= bodies[CONSTRAINT_BODY_A] == body_address(body) and bodies[_BODY_B] == body_address(other)
+    fits &= bodies[CONSTRAINT_BODY_A] == body_address(body) and bodies[CONSTRAINT_BODY_B] == body_address(other)
     fits &= _offsets("cpArbiter", e=0, a=ARBITER_SHAPE_A, n=ARBITER_NORMAL, state=ARBITER_STATE)
     fits &= _offsets("cpArbiter", thread_a=ARBITER_NEXT_A, thread_b=ARBITER_NEXT_B, contacts=ARBITER_CONTACTS)
     fits &= _offsets("struct cpContact", r2=CONTACT_R2, jnAcc=CONTACT_NORMAL_IMPULSE, hash=CONTACT_HASH)

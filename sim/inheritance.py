@@ -55,8 +55,11 @@ def succeed(
             tables.state(joint.index)[:] = heir.state
             tables[at.RESULT][joint.index] = heir.result
     tables[at.SETTINGS][:] = before[at.SETTINGS]
+    tables[at.SETTINGS][at.STEP] = before[at.SETTINGS][at.WHOLE_STEP]
     for count in (at.NEWTON_STEPS, at.UNCONVERGED):
         tables.control[count] = before.control[count]
+    # What bore on pieces that are new is not known, and not sudden.
+    tables[at.LAST_FORCE][[body not in old.bodies for body in new.bodies]] = np.nan
     ledger = tables[at.LEDGER]
     ledger[at.LEDGER_ELASTIC] = 0.5 * tables[at.RESULT][:, [at.RESULT_BEFORE, at.RESULT_ELASTIC]].sum()
     ledger[at.LEDGER_TO_COME] = before[at.LEDGER][at.LEDGER_TO_COME]

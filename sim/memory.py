@@ -80,5 +80,17 @@ def call_notice(typing_context, function, key):  # type: ignore[no-untyped-def]
     return types.void(types.int64, types.int64), generate
 
 
+@intrinsic
+def call_constraint(typing_context, function, constraint, h):  # type: ignore[no-untyped-def]
+    """Call the C function at ``function`` with the address of a constraint and a number."""
+
+    def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+        pointer = builder.inttoptr(args[0], ir.FunctionType(ir.VoidType(), [WORD, ir.DoubleType()]).as_pointer())
+        builder.call(pointer, args[1:])
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64, types.float64), generate
+
+
 #: Signature of both functions of a law: parameters, state, deformation, out.
 LAW_SIGNATURE = types.void(types.int64, types.int64, types.int64, types.int64)

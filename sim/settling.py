@@ -42,6 +42,8 @@ def settle(
     """
     if scene.gravity == 0.0 and not assembly.dead_loads and not assembly.settlements:
         return
+    # What it swings is not of interest, and to be damped as much as can be.
+    assembly.structure.whole_steps_only = True
     for k in range(_MOST_STEPS):
         before, share = min(1.0, k / _LOADING_STEPS), min(1.0, (k + 1) / _LOADING_STEPS)
         assembly.space.gravity = (0.0, -share * scene.gravity)
@@ -54,5 +56,6 @@ def settle(
         assembly.step(SETTLING_STEP, share)
         speed = max(body.velocity.length for body in assembly.structure.bodies)
         if share == 1.0 and speed * SETTLING_STEP < rest:
+            assembly.structure.whole_steps_only = False
             return
     raise SolverError("the scene does not come to rest under its own weight; support it, or make it stronger")

@@ -22,6 +22,8 @@ from sim.step_back import StepBack, cause
 from sim.tables import Tables
 
 _TOLERANCE = 1e-9
+# A blow that lasts does so in the structures that break off.
+_OF_BLOW = [at.BLOW, at.BLOW_KINETIC, at.BLOW_LEAST, at.BLOW_MOST, at.BLOW_MOST_AT, at.BLOW_AGE, at.BLOW_SHARE]
 
 
 class SolverError(RuntimeError):
@@ -103,8 +105,14 @@ class Structure(Readings):
         """
         olds = dict.fromkeys([after, *(joint.structure for joint in self.joints)])
         moved: dict[pymunk.Body, np.ndarray] = {}
+        pushed: dict[pymunk.Body, np.ndarray] = {}
         for old in filter(None, olds):
             moved |= dict(zip(old.bodies, old._let_go(), strict=True))
+            pushed |= dict(zip(old.bodies, old.tables[at.LAST_FORCE], strict=True))
+            lasting = self._settings[_OF_BLOW], old._settings[_OF_BLOW]
+            self._settings[_OF_BLOW] = max(lasting, key=lambda blow: float(blow[0]))
+        for i, body in enumerate(self.bodies):
+            self.tables[at.LAST_FORCE][i] = pushed.get(body, 0.0)
         last = self.tables[at.LAST_VELOCITY]
         if moved or any(body.body_type == pymunk.Body.KINEMATIC for body in self.bodies):
             for i, body in enumerate(self.bodies):
@@ -232,6 +240,15 @@ class Structure(Readings):
         self._settings[[at.BETA, at.DELTA]] = self._settings[[at.WANTED_BETA, at.WANTED_DELTA]] = scheme
         for joint in self.joints:
             joint.scheme = scheme
+
+    @property
+    def whole_steps_only(self) -> bool:
+        """Whether no step is taken in parts, whatever happens in it."""
+        return bool(self._settings[at.WHOLE_ONLY])
+
+    @whole_steps_only.setter
+    def whole_steps_only(self, wanted: bool) -> None:
+        self._settings[at.WHOLE_ONLY] = wanted
 
     def told(self) -> None:
         """Something happened in a step that the space has not left yet; called by the kernels."""

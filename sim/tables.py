@@ -58,7 +58,7 @@ class Tables:
         keys, values = hash_table([chipmunk.body_address(body) for body in bodies])
         per_joint = (at.DEFORMATION, at.LIGHTNESS, at.IMPULSE, at.RESIDUAL, at.SLOPE)
         velocities = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION, at.BEGUN_AT)
-        per_body = (*velocities, at.EXTERNAL, at.CONTACT_IMPULSE, at.SOLUTION)
+        per_body = (*velocities, at.LAST_FORCE, at.CARRIED, at.EXTERNAL, at.CONTACT_IMPULSE, at.SOLUTION)
         self._arrays: dict[int, np.ndarray] = {}
         #: The control table.
         self.control = np.zeros(at.CONTROL_WORDS, dtype=np.int64)
@@ -91,6 +91,7 @@ class Tables:
                 at.LOWER_BLOCKS: np.zeros((below, 9)),
                 at.COLUMN: np.zeros((np.diff(pattern.column_start).max(initial=0), 9)),
                 at.RESULT: np.zeros((n, at.RESULT_WORDS)),
+                at.STOCK: chipmunk.stock_kinds(),
                 at.BODY_KEYS: keys,
                 at.BODY_VALUES: values,
             }
@@ -102,6 +103,7 @@ class Tables:
         self.control[at.DAMPED] = int(self[at.DAMPING].any())
         self.control[at.BREAKABLE] = int(np.isfinite(self[at.LIMITS][:, :3]).any())
         self.control[at.HASH_LENGTH] = len(keys)
+        self.control[at.KINDS] = len(self[at.STOCK])
         self.make_room(_ROOM)
 
     def __getitem__(self, word: int) -> np.ndarray:
@@ -164,7 +166,9 @@ class Tables:
 
 # The plastic state is kept beside these. Gradient and response of the last step weigh the bodies of the next.
 _OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.GRADIENT, at.RESPONSE, at.RESULT)
-_KEPT = (*_OF_JOINTS, at.SETTINGS, at.LEDGER, at.LAST_VELOCITY, at.LAST_POSITION, at.BEGUN_AT, at.SHIFT)
+_OF_BODIES = (at.LAST_VELOCITY, at.LAST_POSITION, at.LAST_FORCE, at.BEGUN_AT, at.SHIFT)
+_OF_FACTOR = (at.DIAGONAL, at.LOWER_BLOCKS)
+_KEPT = (*_OF_JOINTS, *_OF_BODIES, *_OF_FACTOR, at.SETTINGS, at.LEDGER)
 _KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.SHIFTED, at.PARTS, at.ROOM)
 
 

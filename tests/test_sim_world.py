@@ -65,7 +65,7 @@ def test_a_ball_breaks_the_post_and_keeps_the_same_speed_at_any_step() -> None:
         after_the_break.append(world.bodies["ball"].velocity.x)
         _, found = run("post-impact", dt, duration=0.31)
         speeds.append(found["ball's speed behind the post"])
-    assert max(after_the_break) / min(after_the_break) < 1.02
+    assert max(after_the_break) / min(after_the_break) < 1.03
     # The post, free by now and spinning by up to 0.3 rad in a step, meets the ball again on its way.
     assert max(speeds) / min(speeds) < 1.02
     # Momentum about the foot, then M over the rotation limit (slip and friction left out).

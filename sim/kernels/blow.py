@@ -8,36 +8,52 @@ falling crate is stopped within four. So a step of more than half a millisecond 
 - a blow is a contact with a speed of approach beyond what outer forces give in two steps (what is laid down on a
   structure, or rests on it, is none), and with more than a thousandth of the structure's kinetic and elastic
   energy;
-- it is over when the structure has turned: nothing flows any more, and what it stores does not grow; or when whole
-  steps would lose less than 0.5 % of the blow's energy in a 60th of a second. What n parts lose is known, and a whole
-  step loses n times that.
+- so is what forces from outside bring suddenly, see `sudden`;
+- it is over when the structure has turned and swung back: nothing flows any more, and for as long again as it took to
+  store the most elastic energy, no more was stored; or when whole steps would lose less than a thousandth of the blow's
+  energy in a 60th of a second. What n parts lose is known, and a whole step loses n times that.
 
 So the largest and the lasting deflection are found at any step; what swings behind them is damped as ever. Nothing is
-spent on this where nothing is hit. Vehicles and other bodies with constraints of Chipmunk's own, which know whole steps
-only, are left to those; and a structure that falls on what is held does so in whole steps, too.
+spent on this where nothing is hit. What constraints of Chipmunk's own tie to a structure, and vehicles, are
+left to whole steps.
 """
 
 import math
 
-from sim.chipmunk import BODY_FULL_WORDS, BODY_WORDS, CONSTRAINTS, MASS_INVERSE
+import numpy as np
+
+from sim.chipmunk import BODY_WORDS, MASS_INVERSE
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.complement import relative
 from sim.kernels.layout import (
     BLOW,
+    BLOW_AGE,
+    BLOW_KINETIC,
+    BLOW_LEAST,
+    BLOW_MOST,
+    BLOW_MOST_AT,
+    BLOW_SHARE,
     BODY_A,
     BODY_B,
+    BOUNCE,
+    CACHED,
     INERTIA_M,
     LEDGER_ELASTIC,
     LEDGER_KINETIC,
+    LEDGER_NUMERICAL,
     OTHER_START,
     OWNER_A,
     OWNER_B,
     STRIKE,
+    SUDDEN,
+    WHOLE_ONLY,
     WHOLE_STEP,
 )
+from sim.kernels.links import MOST_LINKED, reach
 from sim.kernels.rows import own_velocity
-from sim.memory import floats, integers, kernel
+from sim.kernels.sudden import WORTH
+from sim.memory import floats, kernel
 
 #: Longest part of a step while a blow lasts [s].
 LONGEST_PART = 0.5e-3
@@ -45,8 +61,10 @@ LONGEST_PART = 0.5e-3
 _SUDDEN = 2.0
 # Of the structure's energy.
 _WORTH = 1e-3
+# How long a structure takes to turn and swing back, over how long it takes to turn.
+_BACK = 2.0
 #: Of the blow's energy, lost in a second [1/s].
-OVER = 0.3
+OVER = 0.05
 
 
 @kernel
@@ -55,30 +73,84 @@ def count_parts(head):  # type: ignore[no-untyped-def]
     parts = math.ceil(views.settings(views.control(head))[WHOLE_STEP] / LONGEST_PART - 1e-6)
     if parts <= 1:
         return 1
-    energy, lasting, new, c = 0.0, 0.0, 0.0, head
+    kinetic, elastic, lasting, new, sudden, c = 0.0, 0.0, 0.0, 0.0, 0.0, head
     while c != 0:
         t = views.control(c)
-        if t[at.SPREAD] == 1:
+        ledger, settings = views.ledger(t), views.settings(t)
+        if t[at.SPREAD] == 1 or settings[WHOLE_ONLY] != 0.0:
             return 1
-        ledger = views.ledger(t)
-        energy += ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC]
-        lasting = max(lasting, views.settings(t)[BLOW])
-        places, touches = views.places(t), views.touches(t)
+        kinetic, elastic = kinetic + ledger[LEDGER_KINETIC], elastic + ledger[LEDGER_ELASTIC]
+        lasting, sudden = max(lasting, settings[BLOW]), sudden + settings[SUDDEN]
+        places, touches, lies = views.places(t), views.touches(t), False
         for k in range(t[at.CONTACTS]):
-            if is_joined(places[k]):
-                return 1
-            touches[k, STRIKE] = speed = approach(c, places[k], touches[k])
+            lies = lies or (touches[k, CACHED] > 0.0 and is_held(places[k]))
+        for k in range(t[at.CONTACTS]):
+            # What lies on the ground and rocks there is not struck by it; a bounce takes a step.
+            whole = is_held(places[k]) and (lies or touches[k, BOUNCE] > 0.0)
+            speed = 0.0 if whole else approach(c, places[k], touches[k])
+            touches[k, STRIKE] = speed
             if speed > 0.0:
                 new = max(new, 0.5 * striking_mass(places[k]) * speed * speed)
         c = t[at.NEXT]
-    if new > _WORTH * energy:
+    if new <= _WORTH * (kinetic + elastic):
+        new = 0.0
+    worth = 0.5 * (_WORTH if new >= sudden else WORTH)
+    new = max(new, sudden)
+    if new > 0.0 or lasting == 0.0:
         lasting = max(lasting, new)
-    c = head
+        c = head
+        while c != 0:
+            t = views.control(c)
+            settings = views.settings(t)
+            settings[BLOW], settings[BLOW_KINETIC], settings[BLOW_AGE], settings[BLOW_MOST_AT] = (
+                lasting,
+                kinetic,
+                0.0,
+                0.0,
+            )
+            settings[BLOW_LEAST], settings[BLOW_MOST], settings[BLOW_SHARE] = elastic, elastic, worth
+            c = t[at.NEXT]
+    else:
+        grow_older(head, kinetic, views.settings(views.control(head))[WHOLE_STEP] / parts)
+    if lasting == 0.0 or reach(head, np.empty(MOST_LINKED, np.int64)) < 0:
+        forget(head)
+        return 1
+    return parts
+
+
+@kernel
+def grow_older(head, kinetic, h):  # type: ignore[no-untyped-def]
+    """Note what became of a blow in a part of length ``h``; its energy is what it set moving, if that is more."""
+    elastic, flowing, c = sum_of(head, LEDGER_ELASTIC), flows(head), head
     while c != 0:
         t = views.control(c)
-        views.settings(t)[BLOW] = lasting
+        settings = views.settings(t)
+        settings[BLOW] = max(settings[BLOW], kinetic - settings[BLOW_KINETIC])
+        settings[BLOW_AGE] += h
+        if elastic <= settings[BLOW_LEAST]:
+            # It gives back what was stored before.
+            settings[BLOW_LEAST], settings[BLOW_MOST] = elastic, elastic
+        if elastic >= settings[BLOW_MOST] or flowing:
+            settings[BLOW_MOST], settings[BLOW_MOST_AT] = max(elastic, settings[BLOW_MOST]), settings[BLOW_AGE]
         c = t[at.NEXT]
-    return parts if lasting > 0.0 else 1
+
+
+@kernel
+def is_over(head, flowed):  # type: ignore[no-untyped-def]
+    """Whether a group has turned and swung back, or stores so much that its blow is little against it."""
+    settings = views.settings(views.control(head))
+    back = not flowed and settings[BLOW_AGE] >= _BACK * settings[BLOW_MOST_AT]
+    return back or settings[BLOW] < settings[BLOW_SHARE] * sum_of(head, LEDGER_ELASTIC)
+
+
+@kernel
+def is_held(place):  # type: ignore[no-untyped-def]
+    """Whether a structure touches what is held in a contact."""
+    for side in range(2):
+        owner, body = (place[OWNER_A], place[BODY_A]) if side == 0 else (place[OWNER_B], place[BODY_B])
+        if owner == 0 and floats(body, BODY_WORDS)[MASS_INVERSE] == 0.0:
+            return True
+    return False
 
 
 @kernel
@@ -91,7 +163,7 @@ def approach(c, place, touch):  # type: ignore[no-untyped-def]
 
 @kernel
 def striking_mass(place):  # type: ignore[no-untyped-def]
-    """Mass of the loose body that strikes, or of the lighter structure where none does; 0 on held ground [kg]."""
+    """Mass of the loose body that strikes, or of the lighter structure where none does [kg]."""
     least = math.inf
     for side in range(2):
         owner, body = place[OWNER_A], place[BODY_A]
@@ -99,7 +171,9 @@ def striking_mass(place):  # type: ignore[no-untyped-def]
             owner, body = place[OWNER_B], place[BODY_B]
         if owner == 0:
             lightness = floats(body, BODY_WORDS)[MASS_INVERSE]
-            return 1.0 / lightness if lightness > 0.0 else 0.0
+            if lightness > 0.0:
+                return 1.0 / lightness
+            continue
         mass, t = 0.0, views.control(owner)
         weight = views.weight(t)
         for i in range(t[at.MOVING]):
@@ -109,21 +183,18 @@ def striking_mass(place):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def is_joined(place):  # type: ignore[no-untyped-def]
-    """Whether the loose body of a contact is a part of something else, by constraints that Chipmunk solves."""
-    loose = place[BODY_A] if place[OWNER_A] == 0 else place[BODY_B]
-    if place[OWNER_A] != 0 and place[OWNER_B] != 0:
-        return False
-    return floats(loose, BODY_WORDS)[MASS_INVERSE] > 0.0 and integers(loose, BODY_FULL_WORDS)[CONSTRAINTS] != 0
+def numerical_loss(head):  # type: ignore[no-untyped-def]
+    """What a group's time integration has dissipated so far [J]."""
+    return sum_of(head, LEDGER_NUMERICAL)
 
 
 @kernel
-def elastic_energy(head):  # type: ignore[no-untyped-def]
-    """Elastic energy of a group [J]."""
+def sum_of(head, entry):  # type: ignore[no-untyped-def]
+    """An entry of the ledgers of a group, summed [J]."""
     total, c = 0.0, head
     while c != 0:
         t = views.control(c)
-        total += views.ledger(t)[LEDGER_ELASTIC]
+        total += views.ledger(t)[entry]
         c = t[at.NEXT]
     return total
 

@@ -111,7 +111,8 @@ def get_impulse(digest: str) -> Callable[..., float]:
             return 0.0
         t = views.control(own[CONTROL])
         p = views.per_joint(t, at.IMPULSE)[own[CONTROL + 1]]
-        return math.hypot(p[0], p[1])
+        # That of the last part, for all of them.
+        return max(t[at.PARTS], 1) * math.hypot(p[0], p[1])
 
     return get_impulse
 

@@ -20,7 +20,7 @@ import numpy as np
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.energy import work_of_shifts, work_on_held
-from sim.kernels.kinematics import lag_of, rates
+from sim.kernels.kinematics import lag_of, let_go, rates
 from sim.kernels.layout import (
     BETA,
     COMMIT_WORDS,
@@ -128,7 +128,10 @@ def commit(t):  # type: ignore[no-untyped-def]
         if active[k] == 0:
             # Let go by hand: what it stored goes with it.
             external -= 0.5 * (r[RESULT_BEFORE] + r[RESULT_ELASTIC])
-            r[RESULT_Q:RESULT_PLASTIC] = 0.0
+            if r[RESULT_USED] < 1.0 or t[at.BROKE] == 0:
+                # What broke in a part of this step is still seen.
+                r[RESULT_Q:RESULT_ELASTIC] = 0.0
+            r[RESULT_ELASTIC], r[RESULT_BEFORE] = 0.0, 0.0
             continue
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         x, y, z = rates(gradient, k, velocity, ia, velocity, ib)
@@ -180,6 +183,7 @@ def commit(t):  # type: ignore[no-untyped-def]
             lost += r[RESULT_ELASTIC] + held * (at_end - r[RESULT_ELASTIC])
             at_start, at_end, second_half = 0.0, 0.0, 0.0
             r[RESULT_USED] = 1.0
+            let_go(t, k, scale[k] * h)
             active[k] = 0
             broke += 1
         stored = 0.5 * (at_start + at_end)

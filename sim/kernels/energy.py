@@ -35,6 +35,7 @@ from sim.kernels import views
 from sim.kernels.inertia import moment_of
 from sim.kernels.kinematics import impulses, rates
 from sim.kernels.layout import (
+    BETA,
     CACHED,
     INERTIA_I,
     INERTIA_M,
@@ -42,6 +43,7 @@ from sim.kernels.layout import (
     LEDGER_EXTERNAL,
     LEDGER_KINETIC,
     LEDGER_NUMERICAL,
+    MOVE,
     OTHER_START,
     SPREAD_IMPULSE,
     STEP,
@@ -103,6 +105,15 @@ def close(c, t):  # type: ignore[no-untyped-def]
                 turning += mass * (end[i, axis] - solved[i, axis]) * mean
                 if axis == 2:
                     turning -= (weight[i, INERTIA_I] - mass) * solved[i, axis] * mean
+    if settings[BETA] == 0.0 and settings[MOVE] != settings[STEP]:
+        # The start's velocities have carried forces another way than that of a step.
+        share, (of_outside, of_contacts) = 0.5 * (1.0 - settings[MOVE] / settings[STEP]), work_at_start(t, start)
+        less = share * of_outside
+        if touching and settings[MOVE] < settings[STEP]:
+            # Contacts that bear have done so, too; those of a blow, before whose first part bodies moved further, not.
+            less += min(share * of_contacts, 0.0)
+        outside -= less
+        ledger[LEDGER_NUMERICAL] -= less
     given, arrived = contacts(c, t, start, end)
     # What contacts did that another structure of the group has booked as its own comes from outside.
     outside += given + (contact_work - arrived)
@@ -110,6 +121,21 @@ def close(c, t):  # type: ignore[no-untyped-def]
     ledger[LEDGER_KINETIC] = 0.5 * after
     ledger[LEDGER_NUMERICAL] -= turning
     ledger[LEDGER_CONTACT] += given - arrived
+
+
+@kernel
+def work_at_start(t, start):  # type: ignore[no-untyped-def]
+    """Work that forces from outside, of held bodies among them, and contacts would do at the ``start`` velocities."""
+    external, struck = views.per_body(t, at.EXTERNAL), views.per_body(t, at.CONTACT_IMPULSE)
+    joint_bodies, moving, of_outside, of_contacts = views.joint_bodies(t), t[at.MOVING], 0.0, 0.0
+    for i in range(moving):
+        for axis in range(3):
+            of_outside += external[i, axis] * start[i, axis]
+            of_contacts += struck[i, axis] * start[i, axis]
+    for k in range(t[at.JOINTS]):
+        if joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving:
+            of_outside -= work_on_held(t, k, start, start)
+    return of_outside, of_contacts
 
 
 @kernel

@@ -21,9 +21,10 @@ been created, until that is gone.
 
 import math
 
-from sim.chipmunk import BODY_WORDS, SPIN, VX, X
+from sim.chipmunk import BODY_WORDS, SPIN, VX, X, Y
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bodies import load_velocities
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import (
     BETA,
@@ -57,7 +58,7 @@ def choose_scheme(t, spin):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def close_from_below(t, contact, plastic, numerical):  # type: ignore[no-untyped-def]
+def close_from_below(t, contact, numerical):  # type: ignore[no-untyped-def]
     """Keep numerical dissipation from being negative; the ledger's entries as they were before this step [J]."""
     ledger = views.ledger(t)
     if ledger[LEDGER_CONTACT] < 0.0:
@@ -78,7 +79,7 @@ def close_from_below(t, contact, plastic, numerical):  # type: ignore[no-untyped
     move_between(ledger, LEDGER_CONTACT, ledger[LEDGER_CONTACT] - contact, least)
     largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
     take_out(t, min(-_ROUNDING * largest, least) - ledger[LEDGER_NUMERICAL])
-    ledger[LEDGER_OWED] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC] - plastic, least)
+    ledger[LEDGER_OWED] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC], least)
 
 
 @kernel
@@ -95,36 +96,58 @@ def take_out(t, energy):  # type: ignore[no-untyped-def]
     """Take ``energy`` [J] out of the relative motion of a structure's bodies, as far as there is any."""
     if energy <= 0.0:
         return
-    body_at, moving = views.body_at(t), t[at.MOVING]
-    mass, x, y, vx, vy, turn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    if t[at.FREE] == 1:
-        for i in range(moving):
-            b = floats(body_at[i], BODY_WORDS)
-            m = mass_of(b)
-            mass, x, y = mass + m, x + m * b[X], y + m * b[X + 1]
-            vx, vy = vx + m * b[VX], vy + m * b[VX + 1]
-        x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
-        inertia = 0.0
-        for i in range(moving):
-            b = floats(body_at[i], BODY_WORDS)
-            m, dx, dy = mass_of(b), b[X] - x, b[X + 1] - y
-            inertia += moment_of(b) + m * (dx * dx + dy * dy)
-            turn += moment_of(b) * b[SPIN] + m * (dx * (b[VX + 1] - vy) - dy * (b[VX] - vx))
-        turn /= inertia
-    inner = 0.0
+    body_at, moving, velocity = views.body_at(t), t[at.MOVING], views.per_body(t, at.SOLUTION)
+    load_velocities(t, velocity)
+    frame, inner = rigid_motion(t, velocity), 0.0
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)
-        u, v, w = b[VX] - vx + turn * (b[X + 1] - y), b[VX + 1] - vy - turn * (b[X] - x), b[SPIN] - turn
+        u, v, w = relative_velocity(body_at[i], velocity[i], frame)
         inner += 0.5 * (mass_of(b) * (u * u + v * v) + moment_of(b) * w * w)
     taken = min(energy, inner)
-    if taken <= 0.0:
-        return
-    less = 1.0 - math.sqrt(1.0 - taken / inner)
+    if taken > 0.0:
+        less = 1.0 - math.sqrt(1.0 - taken / inner)
+        for i in range(moving):
+            b = floats(body_at[i], BODY_WORDS)
+            u, v, w = relative_velocity(body_at[i], velocity[i], frame)
+            b[VX] -= less * u
+            b[VX + 1] -= less * v
+            b[SPIN] -= less * w
+        ledger = views.ledger(t)
+        ledger[LEDGER_KINETIC] -= taken
+        ledger[LEDGER_NUMERICAL] += taken
+    for i in range(moving, t[at.BODIES]):
+        for axis in range(3):
+            velocity[i, axis] = 0.0
+
+
+@kernel
+def rigid_motion(t, velocity):  # type: ignore[no-untyped-def]
+    """The rigid motion with a structure's momenta at velocities (bodies, 3): its centre, its velocity and its spin.
+
+    Rest, if something holds it.
+    """
+    mass, x, y, vx, vy, turn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    if t[at.FREE] == 0:
+        return x, y, vx, vy, turn
+    body_at, moving = views.body_at(t), t[at.MOVING]
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)
-        b[VX] -= less * (b[VX] - vx + turn * (b[X + 1] - y))
-        b[VX + 1] -= less * (b[VX + 1] - vy - turn * (b[X] - x))
-        b[SPIN] -= less * (b[SPIN] - turn)
-    ledger = views.ledger(t)
-    ledger[LEDGER_KINETIC] -= taken
-    ledger[LEDGER_NUMERICAL] += taken
+        m = mass_of(b)
+        mass, x, y = mass + m, x + m * b[X], y + m * b[X + 1]
+        vx, vy = vx + m * velocity[i, 0], vy + m * velocity[i, 1]
+    x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
+    inertia = 0.0
+    for i in range(moving):
+        b = floats(body_at[i], BODY_WORDS)
+        m, dx, dy = mass_of(b), b[X] - x, b[X + 1] - y
+        inertia += moment_of(b) + m * (dx * dx + dy * dy)
+        turn += moment_of(b) * velocity[i, 2] + m * (dx * (velocity[i, 1] - vy) - dy * (velocity[i, 0] - vx))
+    return x, y, vx, vy, turn / inertia
+
+
+@kernel
+def relative_velocity(body, velocity, frame):  # type: ignore[no-untyped-def]
+    """A body's ``velocity`` and spin relative to a `rigid_motion`."""
+    x, y, vx, vy, turn = frame
+    b = floats(body, BODY_WORDS)
+    return velocity[0] - vx + turn * (b[Y] - y), velocity[1] - vy - turn * (b[X] - x), velocity[2] - turn

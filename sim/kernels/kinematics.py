@@ -43,13 +43,15 @@ _EPSILON = 2.0**-52
 
 
 @kernel
-def take_up(t, ratio):  # type: ignore[no-untyped-def]
+def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
     """Let go of joints that are no longer in the space; the others start from ``ratio`` times their last impulses."""
     active, joint_at, joint_bodies = views.active(t), views.joint_at(t), views.joint_bodies(t)
     impulse, scale = views.per_joint(t, at.IMPULSE), views.scale(t)
     moving, held = t[at.MOVING], False
     for k in range(t[at.JOINTS]):
-        if integers(joint_at[k], CONSTRAINT_SPACE + 1)[CONSTRAINT_SPACE] == 0:
+        if active[k] != 0 and integers(joint_at[k], CONSTRAINT_SPACE + 1)[CONSTRAINT_SPACE] == 0:
+            if last_step > 0.0:
+                let_go(t, k, last_step)
             active[k] = 0
         held = held or (active[k] != 0 and (joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving))
         for i in range(3):
@@ -60,9 +62,29 @@ def take_up(t, ratio):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def let_go(t, k, h):  # type: ignore[no-untyped-def]
+    """Book the impulse of joint k, in a step of ``h``, as forces from outside until now: it is not there any more."""
+    joint_bodies, impulse, force = (
+        views.joint_bodies(t),
+        views.per_joint(t, at.IMPULSE),
+        views.per_body(t, at.LAST_FORCE),
+    )
+    px, py, on_a, on_b = impulses(views.gradient(t), k, impulse[k, 0] / h, impulse[k, 1] / h, impulse[k, 2] / h)
+    ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
+    if ia < t[at.MOVING]:
+        force[ia, 0] -= px
+        force[ia, 1] -= py
+        force[ia, 2] += on_a
+    if ib < t[at.MOVING]:
+        force[ib, 0] += px
+        force[ib, 1] += py
+        force[ib, 2] += on_b
+
+
+@kernel
 def lag_of(settings):  # type: ignore[no-untyped-def]
-    """How far q* lags behind the old velocities: β times the last step, which they moved the bodies by [s]."""
-    return settings[at.BETA] * settings[at.STEP] / settings[at.STEP_RATIO]
+    """How far q* lags behind the old velocities: β times as long as they have moved the bodies [s]."""
+    return settings[at.BETA] * settings[at.MOVE]
 
 
 @kernel

@@ -5,13 +5,13 @@ those of h + τ. Chipmunk's velocities belong to half a step before their time, 
 for n steps, where √(n (n + 1)) g h belongs to its way), so what falls is given what outer forces do in ½ h - τ.
 """
 
-from sim.chipmunk import BODY_WORDS, SPIN, VX
+from sim.chipmunk import BODY_WORDS, MASS_INVERSE, SPIN, VX
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import load_positions, move
 from sim.kernels.inertia import moment_of
 from sim.kernels.layout import GAP, INVERSE_M, LOOSE_START, OTHER_START, STEP, STEP_RATIO, STRIKE, WHOLE_STEP
-from sim.kernels.others import which
+from sim.kernels.others import touched, which
 from sim.kernels.rows import own_velocity
 from sim.memory import floats, kernel
 
@@ -40,7 +40,7 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
     for i in range(len(others)):
         b = floats(others[i], BODY_WORDS)
         move(others[i], -late * b[VX], -late * b[VX + 1], -late * b[SPIN])
-    c = head
+    hit, c = False, head
     share = 0.5 - late / views.settings(views.control(head))[WHOLE_STEP]
     while c != 0:
         t = views.control(c)
@@ -51,7 +51,7 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
             touches[k, GAP] -= late * (touches[k, OTHER_START] + own_velocity(c, places[k], touches[k], 0, start))
             i = which(others, places[k])
             if touches[k, STRIKE] > 0.0:
-                struck = True
+                struck = hit = True
                 if i >= 0:
                     b = floats(others[i], BODY_WORDS)
                     b[VX] = touches[k, LOOSE_START] + share * pushes[i, 0]
@@ -70,3 +70,8 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
                 start[i, 1] += share * external[i, 1] * weight[i, INVERSE_M]
                 start[i, 2] += share * external[i, 2] / moment_of(floats(body_at[i], BODY_WORDS))
         c = t[at.NEXT]
+    for i in range(len(others) if hit else 0):
+        b = floats(others[i], BODY_WORDS)
+        if b[MASS_INVERSE] > 0.0 and not touched(head, others[i]):
+            b[VX] += share * pushes[i, 0]
+            b[VX + 1] += share * pushes[i, 1]

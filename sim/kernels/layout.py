@@ -31,7 +31,9 @@ SHIFTED, TURNING, FREE = 21, 22, 23
 PARTS, AHEAD, AFTER_PARTS = 25, 26, 30
 # Loose bodies noted in `PUSHES`; pairs of shapes that Chipmunk would part the wrong way (-1 once that was seen to).
 PUSHED, ASTRAY = 28, 29
-_FIRST_ADDRESS = 31
+# Kinds of Chipmunk's own constraints.
+KINDS = 31
+_FIRST_ADDRESS = 32
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -80,8 +82,11 @@ _FIRST_ADDRESS = 31
     BEGUN_AT,  # (bodies, 3): positions at the start of a step that is taken in parts
     COPY,  # what such a step found, see `refusal`; made when first needed
     PUSHES,  # (room, 4): address (int64) and pseudo-velocities with which loose bodies ended the last step
-) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 47)
-CONTROL_WORDS = _FIRST_ADDRESS + 47
+    LAST_FORCE,  # (bodies, 3): forces and moments from outside in the last step, see `sudden`
+    CARRIED,  # (bodies, 3): by what bodies were moved at the start of a step of another length, see `moves`
+    STOCK,  # (kinds, 3) int64: Chipmunk's own constraints, see `links`
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 50)
+CONTROL_WORDS = _FIRST_ADDRESS + 50
 
 # Settings (float64); the spread ones are those of the load pattern's spring, see `spread`; BETA and DELTA of a step are
 # chosen from the wanted ones.
@@ -90,7 +95,15 @@ SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 7, 8, 9
 WANTED_BETA, WANTED_DELTA = 10, 11
 # Chipmunk's step, of which `STEP` may be a part, and over the last one; energy of a blow that lasts, see `blow`.
 WHOLE_STEP, WHOLE_RATIO, BLOW = 12, 13, 14
-_NUMBERS = 15
+# Since the blow began: kinetic energy then, least elastic energy, most after it, when that was, and time passed.
+BLOW_KINETIC, BLOW_LEAST, BLOW_MOST, BLOW_MOST_AT, BLOW_AGE = 15, 16, 17, 18, 19
+# Energy that forces from outside bring suddenly, see `sudden`; whether every step is to be taken whole.
+SUDDEN, WHOLE_ONLY = 20, 21
+# For how long the velocities at the start of a step have moved the bodies, see `moves`.
+MOVE = 22
+# Share of a structure's energy below which its blow is none any more.
+BLOW_SHARE = 23
+_NUMBERS = 24
 # All of them again, as they were before the step.
 BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 

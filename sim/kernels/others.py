@@ -1,5 +1,7 @@
 """The bodies that move with a group of structures but are not solved with it: loose ones, and held ones that move.
 
+Loose ones are those that touch it, and what constraints tie to them, see `links`.
+
 A step taken in parts moves them along: they are found once, gathered by address, and put back in the end.
 """
 
@@ -18,10 +20,13 @@ from sim.chipmunk import (
     BIAS_SPIN,
     BIAS_VX,
     BODY_FULL_WORDS,
+    BODY_SPACE,
     BODY_WORDS,
     CONTACT_NORMAL_MASS,
     CONTACT_WORDS,
     MASS_INVERSE,
+    SPACE_GRAVITY,
+    SPACE_WORDS,
     SPIN,
     VX,
     X,
@@ -29,7 +34,8 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import move, put
-from sim.kernels.layout import BODY_A, BODY_B, CACHED, LOOSE_START, OWNER_A, OWNER_B, WHOLE_RATIO
+from sim.kernels.layout import BODY_A, BODY_B, CACHED, LOOSE_START, OWNER_A, OWNER_B, STEP, WHOLE_RATIO
+from sim.kernels.links import MOST_LINKED, reach
 from sim.kernels.rows import push_loose
 from sim.memory import floats, integers, kernel
 
@@ -37,7 +43,9 @@ from sim.memory import floats, integers, kernel
 @kernel
 def others_of(head):  # type: ignore[no-untyped-def]
     """Addresses of the bodies that move with a group's but are not solved with it: loose ones, and moving held ones."""
-    room, c = 0, head
+    linked = np.empty(MOST_LINKED, np.int64)
+    links = reach(head, linked)
+    room, c = max(links, 0), head
     while c != 0:
         t = views.control(c)
         room += t[at.CONTACTS] + t[at.BODIES] - t[at.MOVING]
@@ -56,6 +64,8 @@ def others_of(head):  # type: ignore[no-untyped-def]
         for i in range(t[at.MOVING], t[at.BODIES]):
             count = note(found, count, body_at[i])
         c = t[at.NEXT]
+    for i in range(links):
+        count = note(found, count, linked[i])
     return found[:count]
 
 
@@ -107,6 +117,14 @@ def release(head, others):  # type: ignore[no-untyped-def]
                         pushes[i, axis] = b[word] - at_start
                         b[word] = at_start
         c = t[at.NEXT]
+    h = views.settings(views.control(head))[STEP]
+    for i in range(len(others)):
+        b, space = floats(others[i], BODY_WORDS), integers(others[i], BODY_FULL_WORDS)[BODY_SPACE]
+        if b[MASS_INVERSE] > 0.0 and space != 0 and not touched(head, others[i]):
+            # How fast those were that do not touch is not known; all of them fall.
+            for axis in range(2):
+                pushes[i, axis] = h * floats(space, SPACE_WORDS)[SPACE_GRAVITY + axis]
+                b[VX + axis] -= pushes[i, axis]
     return pushes
 
 
@@ -136,14 +154,63 @@ def load_others(others, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def put_back(body, place, h, whole):  # type: ignore[no-untyped-def]
-    """Put a body back to ``place``, from where the next ``whole`` step moves it to what is a part ``h`` from here."""
+def touched(head, body):  # type: ignore[no-untyped-def]
+    """Whether a group touches a body that is not its own."""
+    c = head
+    while c != 0:
+        t = views.control(c)
+        places = views.places(t)
+        for k in range(t[at.CONTACTS]):
+            if (places[k, OWNER_A] == 0 and places[k, BODY_A] == body) or (
+                places[k, OWNER_B] == 0 and places[k, BODY_B] == body
+            ):
+                return True
+        c = t[at.NEXT]
+    return False
+
+
+@kernel
+def load_places(others, out):  # type: ignore[no-untyped-def]
+    """Positions and angles of the others."""
+    for i in range(len(others)):
+        b = floats(others[i], BODY_WORDS)
+        out[i, 0], out[i, 1], out[i, 2] = b[X], b[X + 1], b[ANGLE]
+
+
+@kernel
+def return_linked(head, others, begun, whole):  # type: ignore[no-untyped-def]
+    """Put those that only constraints link back to where they were, with what the parts moved them by still to come."""
+    for i in range(len(others)):
+        if floats(others[i], BODY_WORDS)[MASS_INVERSE] > 0.0 and not touched(head, others[i]):
+            delay(others[i], begun[i], whole)
+
+
+@kernel
+def delay(body, place, whole):  # type: ignore[no-untyped-def]
+    """Put a body back to ``place``; the next ``whole`` step moves it to where it is by a pseudo-velocity."""
     b = floats(body, BODY_FULL_WORDS)
     x, y, turn = b[X] - place[0], b[X + 1] - place[1], b[ANGLE] - place[2]
     put(body, place[0], place[1], place[2])
-    b[BIAS_VX] += (x + h * b[VX]) / whole - b[VX]
-    b[BIAS_VX + 1] += (y + h * b[VX + 1]) / whole - b[VX + 1]
-    b[BIAS_SPIN] += (turn + h * b[SPIN]) / whole - b[SPIN]
+    b[BIAS_VX] += x / whole
+    b[BIAS_VX + 1] += y / whole
+    b[BIAS_SPIN] += turn / whole
+
+
+@kernel
+def shorten(body, h, whole):  # type: ignore[no-untyped-def]
+    """Let a body's velocities move it for ``h`` only in the next ``whole`` step."""
+    b = floats(body, BODY_FULL_WORDS)
+    less = 1.0 - h / whole
+    b[BIAS_VX] -= less * b[VX]
+    b[BIAS_VX + 1] -= less * b[VX + 1]
+    b[BIAS_SPIN] -= less * b[SPIN]
+
+
+@kernel
+def put_back(body, place, h, whole):  # type: ignore[no-untyped-def]
+    """Put a body back to ``place``, from where the next ``whole`` step moves it to what is a part ``h`` from here."""
+    delay(body, place, whole)
+    shorten(body, h, whole)
 
 
 @kernel

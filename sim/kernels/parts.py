@@ -31,7 +31,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.blow import OVER, elastic_energy, flows, forget
+from sim.kernels.blow import OVER, flows, forget, grow_older, is_over, numerical_loss
 from sim.kernels.bodies import load_velocities, move, store_velocities, write
 from sim.kernels.commit import commit
 from sim.kernels.complement import relative
@@ -53,8 +53,8 @@ from sim.kernels.layout import (
     INVERSE_M,
     LEDGER_CONTACT,
     LEDGER_NUMERICAL,
-    LEDGER_PLASTIC,
     LOOSE_AT,
+    MOVE,
     OTHER_START,
     PUSH,
     STEP,
@@ -64,8 +64,19 @@ from sim.kernels.layout import (
     WHERE,
     WHOLE_STEP,
 )
+from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_links
 from sim.kernels.newton import restart
-from sim.kernels.others import load_others, others_of, put_back, release, struck_besides, which
+from sim.kernels.others import (
+    load_others,
+    load_places,
+    others_of,
+    put_back,
+    release,
+    return_linked,
+    shorten,
+    struck_besides,
+    which,
+)
 from sim.kernels.rows import other_velocity
 from sim.kernels.settle import finite, settle_bounces
 from sim.memory import clear, floats, integers, kernel
@@ -88,10 +99,10 @@ def renew(t):  # type: ignore[no-untyped-def]
 def conclude(c, t):  # type: ignore[no-untyped-def]
     """Let laws and ledger take over what was found; counts the joints that broke."""
     ledger = views.ledger(t)
-    contact, plastic, numerical = ledger[LEDGER_CONTACT], ledger[LEDGER_PLASTIC], ledger[LEDGER_NUMERICAL]
+    contact, numerical = ledger[LEDGER_CONTACT], ledger[LEDGER_NUMERICAL]
     t[at.BROKE] += commit(t)
     close(c, t)
-    close_from_below(t, contact, plastic, numerical)
+    close_from_below(t, contact, numerical)
 
 
 @kernel
@@ -100,34 +111,49 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     others = others_of(head)
     pushes = release(head, others)
     struck = struck_besides(others, pushes)
+    begun = np.empty((len(others), 3))
+    load_places(others, begun)
     late = lateness(head)
     go_back(head, others, pushes, late)
     scale_all(pushes, open_step(head, late, parts))
     # What another body gave comes once, whatever the length of the parts, so that no momentum is lost.
     add_all(pushes, struck, 1.0 / parts)
+    links = links_of(others, views.stock(views.control(head)))
     before, lost, converged = np.empty((len(others), 3)), 0.0, True
-    stored, flowed = elastic_energy(head), False
+    h = views.settings(views.control(head))[STEP]
+    flowed, dissipated = False, numerical_loss(head)
     for _ in range(parts - 1):
         load_others(others, before)
         begin_part(head, others, pushes)
+        prepare_links(links, h)
         c = head
         while c != 0:
             restart(views.control(c))
             c = views.control(c)[at.NEXT]
         converged = settle_bounces(head, fresh, touching) and converged
+        for _ in range(MOST_TURNS if len(links) > 0 else 0):
+            if pull_links(links, h) <= AGREED:
+                break
+            converged = settle_bounces(head, not touching, touching) and converged
         c = head
         while c != 0:
             t = views.control(c)
             if t[at.FAULT] >= 0 or not finite(t):
+                return_linked(head, others, begun, views.settings(t)[WHOLE_STEP])
                 return converged
             c = t[at.NEXT]
         lost += end_part(head, others, before, pushes)
         flowed = flowed or flows(head)
+        grow_older(head, 0.0, h)
+    # One is that of velocities, the other that of the joints' deformations: in a vibration they take turns.
+    lost += max(numerical_loss(head) - dissipated, 0.0)
     settings = views.settings(views.control(head))
     worth = OVER * settings[WHOLE_STEP] * settings[BLOW]
-    if parts * lost < worth or not (flowed or elastic_energy(head) > stored):
+    if parts * lost < worth or is_over(head, flowed):
         forget(head)
     begin_part(head, others, pushes)
+    prepare_links(links, h)
+    return_linked(head, others, begun, settings[WHOLE_STEP])
     c = head
     while c != 0:
         views.control(c)[at.PUSHED_APART] = 0
@@ -149,6 +175,7 @@ def open_step(head, late, parts):  # type: ignore[no-untyped-def]
         share = (h + late) / (h * parts)
         settings[STEP] = share * h
         settings[STEP_RATIO] = share * h / max(old - late, share * h)
+        settings[MOVE] = max(settings[MOVE] - late, share * h)
         t[at.PARTS], t[at.AHEAD], t[at.PUSHED_APART] = parts, 1, 1
         scale_all(views.per_joint(t, at.IMPULSE), share)
         scale_all(views.per_body(t, at.EXTERNAL), share)
@@ -251,11 +278,11 @@ def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
             for axis in range(3):
                 start[i, axis] = last[i, axis]
         clear(views.per_body(t, at.CONTACT_IMPULSE))
-        views.settings(t)[STEP_RATIO] = 1.0
+        views.settings(t)[STEP_RATIO], views.settings(t)[MOVE] = 1.0, h
         if t[at.SHIFTED] == 1:
             clear(views.shift(t))
             t[at.SHIFTED] = 0
-        take_up(t, 1.0)
+        take_up(t, 1.0, h)
         renew(t)
         c = t[at.NEXT]
     return lost
@@ -301,7 +328,9 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
             one[at.AHEAD] = 0
             c = one[at.NEXT]
         for i in range(len(others)):
-            if others[i] != 0:
+            if others[i] != 0 and floats(others[i], BODY_WORDS)[MASS_INVERSE] > 0.0:
+                shorten(others[i], h, whole)
+            elif others[i] != 0:
                 # Held, and moved evenly.
                 b, ahead = floats(others[i], BODY_WORDS), whole - h
                 move(others[i], -ahead * b[VX], -ahead * b[VX + 1], -ahead * b[SPIN])

@@ -108,7 +108,9 @@ def roll_back(t):  # type: ignore[no-untyped-def]
         for axis in range(3):
             # How it was moved, back to the pseudo-velocity by which.
             shift[i, axis] = shift[i, axis] / h if math.isfinite(shift[i, axis] / h) else 0.0
+    carried = views.per_body(t, at.CARRIED)
     for i in range(t[at.MOVING]):
+        move(body_at[i], -carried[i, 0], -carried[i, 1], -carried[i, 2])
         step_back(t, i, h)
     t[at.SHIFTED] = 1
     t[at.PARTS] = 1 + t[at.AFTER_PARTS]

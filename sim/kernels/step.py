@@ -11,11 +11,13 @@ from sim.kernels.guard import choose_scheme
 from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import prepare, take_up
 from sim.kernels.layout import BEFORE
+from sim.kernels.moves import carry
 from sim.kernels.newton import restart
 from sim.kernels.others import even_out, note_pushes
 from sim.kernels.parts import close_step, conclude, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.settle import book_cached, finite, settle_bounces
+from sim.kernels.sudden import sudden_energy
 from sim.memory import call_notice, clear, kernel
 
 
@@ -26,7 +28,9 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     settings = views.settings(t)
     for i in range(BEFORE):
         settings[BEFORE + i] = settings[i]
-    ratio = h / settings[at.STEP] if settings[at.STEP] > 0.0 else 0.0
+    last_step = settings[at.STEP]
+    moved = h - settings[at.WHOLE_STEP] + last_step if t[at.PARTS] > 1 else h
+    ratio = h / last_step if last_step > 0.0 else 0.0
     settings[at.STEP] = h
     settings[at.STEP_RATIO] = ratio if ratio > 0.0 else 1.0
     if t[at.PARTS] > 1 and h != settings[at.WHOLE_STEP] and h > 0.0:
@@ -43,9 +47,11 @@ def begin(c, h):  # type: ignore[no-untyped-def]
         # Python notes how all else in the space is.
         call_notice(t[at.NOTICE], t[at.KEY])
     choose_scheme(t, spin)
-    take_up(t, ratio)
+    take_up(t, ratio, last_step)
+    carry(t, h, last_step, moved, touching)
     add_inertia(t)
     prepare(t)
+    settings[at.SUDDEN] = sudden_energy(t, last_step)
     t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY] = 0, 0, 0
     if not touching:
         return

@@ -1,0 +1,54 @@
+"""How far velocities have carried bodies when a step begins.
+
+Chipmunk moves bodies at the start of a step, with its length h and the velocities with which the last one ended, whose
+length h' was another one, maybe. Implicit Euler found forces for q + h' V, and plastic flow; carried on to q + h V
+instead, joints yield once more, or are thrown back. A step that is r times as short as the last one would start with
+r - 1 times its velocities, in stiff joints. The average-acceleration rule keeps energies between the middles of moves:
+the one that begins at the middle of the last move lies ½ h V behind where the bodies are to be. So they are to be moved
+
+    by h' V in implicit Euler, and by ½ (h + h') V in the average-acceleration rule,
+
+and where it was h V, the rest is made up for; of a structure that nothing holds, in the motion of its bodies relative
+to each other, and nothing while something touches it, for that would be left behind.
+"""
+
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.bodies import move
+from sim.kernels.guard import relative_velocity, rigid_motion
+from sim.kernels.layout import BETA, MOVE
+from sim.memory import clear, kernel
+
+# Over the step: what is rounding.
+_SAME = 1e-9
+
+
+@kernel
+def carry(t, h, last_step, moved, touching):  # type: ignore[no-untyped-def]
+    """Have bodies that have ``moved`` for so long moved as far as they should be, and note how long that is."""
+    settings, body_at = views.settings(t), views.body_at(t)
+    clear(views.per_body(t, at.CARRIED))
+    settings[MOVE] = moved
+    implicit = settings[BETA] == 0.0
+    rest = (last_step if implicit else 0.5 * (last_step + h)) - moved
+    if last_step == 0.0 or abs(rest) <= _SAME * h or touching or t[at.CONTACTS] != 0:
+        return
+    last = views.per_body(t, at.LAST_VELOCITY)
+    for i in range(t[at.MOVING], t[at.BODIES]):
+        if last[i, 0] != 0.0 or last[i, 1] != 0.0 or last[i, 2] != 0.0:
+            return
+    frame = rigid_motion(t, last)
+    for i in range(t[at.MOVING]):
+        u, v, w = relative_velocity(body_at[i], last[i], frame)
+        carry_on(t, i, rest * u, rest * v, rest * w)
+    settings[MOVE] = last_step if implicit else h
+
+
+@kernel
+def carry_on(t, i, x, y, turn):  # type: ignore[no-untyped-def]
+    """Move body i, and note by what."""
+    carried = views.per_body(t, at.CARRIED)
+    move(views.body_at(t)[i], x, y, turn)
+    carried[i, 0] += x
+    carried[i, 1] += y
+    carried[i, 2] += turn

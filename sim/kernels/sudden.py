@@ -1,0 +1,142 @@
+"""What comes suddenly without anything being hit: a force put on at once, a jerk of a support, a joint that lets go.
+
+Implicit Euler takes the energy out of what such a change sets swinging, within few steps at 60 Hz. So a change that
+brings much is taken like a blow, see `blow`: in parts. With ΔF what forces from outside are more than in the last step
+(an impulse counts as a force for one step), and H the matrix that was factored last, it brings the energy
+
+    ½ h ΔF · H⁻¹ h ΔF,   H = M + h² Jᵀ D J,
+
+within a step: ½ ΔF²/k for a load on a spring that the step is long for, and kinetic energy where it is short. A support
+whose velocity changes brings, at the most, what it takes to have the whole structure follow. Forces of joints that let
+go count as if they had been forces from outside until then.
+
+A structure that nothing holds keeps its momenta to rounding only in whole steps, and takes those.
+
+What brings less than a hundredth of the energy that is there already, a tenth of the forces, is none: loads that grow
+within ten steps or more, say.
+"""
+
+import math
+
+import numpy as np
+
+from sim.chipmunk import (
+    BODY_FULL_WORDS,
+    BODY_SPACE,
+    BODY_WORDS,
+    FORCE_X,
+    FORCE_Y,
+    SPACE_GRAVITY,
+    SPACE_WORDS,
+    TORQUE,
+    X,
+)
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.blocks import solve
+from sim.kernels.inertia import mass_of, moment_of
+from sim.kernels.layout import (
+    BLOW,
+    INERTIA_I,
+    INERTIA_M,
+    INVERSE_I,
+    INVERSE_M,
+    LEDGER_ELASTIC,
+    LEDGER_KINETIC,
+    STEP,
+    WANTED_BETA,
+    WHOLE_ONLY,
+)
+from sim.memory import floats, integers, kernel
+
+#: Of the structure's energy.
+WORTH = 1e-2
+
+
+@kernel
+def sudden_energy(t, last_step):  # type: ignore[no-untyped-def]
+    """Energy that comes suddenly in the step that begins, in implicit Euler; 0 while a blow lasts anyway [J].
+
+    Masses and gradients must be those of the step, and Chipmunk not have applied its forces yet.
+    """
+    settings, ledger = views.settings(t), views.ledger(t)
+    energy, by_supports = note_forces(t), note_supports(t)
+    whole = settings[WANTED_BETA] != 0.0 or settings[WHOLE_ONLY] != 0.0 or t[at.SPREAD] == 1 or t[at.FREE] == 1
+    if whole or settings[BLOW] > 0.0:
+        return 0.0
+    enough = WORTH * (ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC])
+    if energy > enough and t[at.NEWTON_STEPS] > 0:
+        # So far that is what it would be without joints, which is the most.
+        energy = with_joints(t) * (last_step / settings[STEP]) ** 2
+    energy = max(energy, by_supports)
+    return energy if enough < energy < math.inf else 0.0
+
+
+@kernel
+def with_joints(t):  # type: ignore[no-untyped-def]
+    """Energy that the change of impulses in `SOLUTION` brings, by the last factor of the matrix [J].
+
+    That is of the last step, or of its last part: the change is to be one of impulses within its length.
+    """
+    # Nothing has been written in this step so far.
+    jump, response, energy = views.per_body(t, at.SOLUTION), views.per_body(t, at.WRITTEN), 0.0
+    for i in range(t[at.MOVING]):
+        for axis in range(3):
+            response[i, axis] = jump[i, axis]
+    solve(t, 0, response)
+    for i in range(t[at.MOVING]):
+        for axis in range(3):
+            energy += 0.5 * jump[i, axis] * response[i, axis]
+    return energy
+
+
+@kernel
+def note_forces(t):  # type: ignore[no-untyped-def]
+    """Note forces from outside, leaving by how much their impulses changed in `SOLUTION`.
+
+    Returns the energy that this would bring if there were no joints, which is the most [J].
+    """
+    body_at, weight, h, most = views.body_at(t), views.weight(t), views.settings(t)[STEP], 0.0
+    start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
+    force, jump = views.per_body(t, at.LAST_FORCE), views.per_body(t, at.SOLUTION)
+    now = np.empty(3)
+    for i in range(t[at.MOVING]):
+        b, space, gx, gy = floats(body_at[i], BODY_WORDS), integers(body_at[i], BODY_FULL_WORDS)[BODY_SPACE], 0.0, 0.0
+        if space != 0:
+            gx, gy = floats(space, SPACE_WORDS)[SPACE_GRAVITY], floats(space, SPACE_WORDS)[SPACE_GRAVITY + 1]
+        mass, moment = mass_of(b), moment_of(b)
+        now[0] = b[FORCE_X] + mass * (gx + (start[i, 0] - last[i, 0]) / h)
+        now[1] = b[FORCE_Y] + mass * (gy + (start[i, 1] - last[i, 1]) / h)
+        now[2] = b[TORQUE] + moment * (start[i, 2] - last[i, 2]) / h
+        for axis in range(3):
+            lightness = weight[i, INVERSE_I if axis == 2 else INVERSE_M]
+            known = lightness > 0.0 and math.isfinite(force[i, axis])
+            jump[i, axis] = h * (now[axis] - force[i, axis]) if known else 0.0
+            most += 0.5 * lightness * jump[i, axis] ** 2
+            force[i, axis] = now[axis]
+    return most
+
+
+@kernel
+def note_supports(t):  # type: ignore[no-untyped-def]
+    """Note how fast held bodies are carried along, by velocity or by hand.
+
+    Returns the most energy that it takes to have the structure follow the change [J].
+    """
+    start, shift, force = views.per_body(t, at.START_VELOCITY), views.shift(t), views.per_body(t, at.LAST_FORCE)
+    body_at, weight, h, most = views.body_at(t), views.weight(t), views.settings(t)[STEP], 0.0
+    for k in range(t[at.MOVING], t[at.BODIES]):
+        # What is held bears any force; its rows of forces hold velocities.
+        x, y = start[k, 0] + shift[k, 3] / h, start[k, 1] + shift[k, 4] / h
+        turn = start[k, 2] + shift[k, 5] / h
+        dx, dy, dw = x - force[k, 0], y - force[k, 1], turn - force[k, 2]
+        force[k, 0], force[k, 1], force[k, 2] = x, y, turn
+        if dx == 0.0 and dy == 0.0 and dw == 0.0:
+            continue
+        energy, centre = 0.0, floats(body_at[k], BODY_WORDS)
+        for i in range(t[at.MOVING]):
+            b = floats(body_at[i], BODY_WORDS)
+            u, v = dx - dw * (b[X + 1] - centre[X + 1]), dy + dw * (b[X] - centre[X])
+            energy += 0.5 * (weight[i, INERTIA_M] * (u * u + v * v) + weight[i, INERTIA_I] * dw * dw)
+        most = max(most, energy)
+    return most

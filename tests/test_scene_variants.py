@@ -58,7 +58,7 @@ def test_a_dropped_box_turns_the_root_by_what_is_left_of_its_energy(dt: float) -
     rigid = brentq(lambda angle: kinetic + weight * math.sin(angle) - M_MAX * angle, 0.1, 1.5)
     assert rigid == pytest.approx(0.473, abs=1e-3)
     world, found = run("dropped-box", dt)
-    assert found["rotation of the root"] == pytest.approx(0.95 * rigid, rel=0.03)
+    assert found["rotation of the root"] == pytest.approx(0.95 * rigid, rel=0.05)
     assert found["box hits the beam"] == pytest.approx(math.sqrt(2.0 * 29.0 / G), abs=1.5 * dt + 1e-3)
     assert found["joints broken"] == 0.0
     assert abs(energy(world.space).gap) < 1e-6 * energy(world.space).external

@@ -7,7 +7,8 @@ import pymunk
 from capacity import InputError
 from sim.joint import DuctileJoint
 from sim.space_state import look_after
-from sim.structure import Structure, raise_after_step
+from sim.step_back import raise_after_step
+from sim.structure import Structure
 
 
 def group(constraint: pymunk.Constraint, space: pymunk.Space) -> None:

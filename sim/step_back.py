@@ -103,3 +103,17 @@ def _contacts(arbiter: int) -> list[np.ndarray]:
     first, count = int(w[ARBITER_CONTACTS]), int(w[ARBITER_COUNT]) & 0xFFFFFFFF
     pair = slice(CONTACT_NORMAL_IMPULSE, CONTACT_NORMAL_IMPULSE + 2)
     return [words(first + CONTACT_BYTES * k, CONTACT_WORDS)[pair] for k in range(count)]
+
+
+def raise_after_step(space: pymunk.Space, error: Exception, back: StepBack | None = None) -> None:
+    """Have ``space`` raise ``error`` at the end of the step that it is in, put back to before it."""
+    pending = [error]
+
+    def fail(space: pymunk.Space, key: object) -> None:  # noqa: ARG001
+        # pymunk does not forget a callback that raises.
+        if pending:
+            if back is not None:
+                back.go()
+            raise pending.pop()
+
+    space.add_post_step_callback(fail, object())

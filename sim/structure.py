@@ -18,7 +18,7 @@ from sim.notices import listen
 from sim.ordering import minimum_degree
 from sim.readings import Readings
 from sim.space_state import look_after
-from sim.step_back import StepBack, cause
+from sim.step_back import StepBack, cause, raise_after_step
 from sim.tables import Tables
 
 _TOLERANCE = 1e-9
@@ -305,17 +305,3 @@ def _space_of(joint: DuctileJoint) -> pymunk.Space:
     body = joint.a if joint.a.body_type == pymunk.Body.DYNAMIC else joint.b
     assert body.space is not None
     return body.space
-
-
-def raise_after_step(space: pymunk.Space, error: Exception, back: StepBack | None = None) -> None:
-    """Have ``space`` raise ``error`` at the end of the step that it is in, put back to before it."""
-    pending = [error]
-
-    def fail(space: pymunk.Space, key: object) -> None:  # noqa: ARG001
-        # pymunk does not forget a callback that raises.
-        if pending:
-            if back is not None:
-                back.go()
-            raise pending.pop()
-
-    space.add_post_step_callback(fail, object())

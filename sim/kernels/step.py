@@ -14,7 +14,8 @@ from sim.kernels.layout import BEFORE
 from sim.kernels.moves import carry
 from sim.kernels.newton import restart
 from sim.kernels.others import even_out, note_pushes
-from sim.kernels.parts import close_step, conclude, take_parts
+from sim.kernels.part import conclude
+from sim.kernels.parts import close_step, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.settle import book_cached, finite, settle_bounces
 from sim.kernels.sudden import sudden_energy

@@ -59,7 +59,7 @@ def pile_asleep() -> pymunk.Space:
     space.sleep_time_threshold, space.idle_speed_threshold = 0.2, 0.5
     for side in (-1.0, 1.0):
         ball = pymunk.Body(5.0, 0.1)
-        ball.position, ball.velocity = (side * 12.0, -0.7), (-side * 6.0, 4.0)
+        ball.position = (0.3 * side, 25.0)
         space.add(ball, pymunk.Circle(ball, 0.15))
     return space
 

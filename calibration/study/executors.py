@@ -63,7 +63,17 @@ def local_processes(number: int) -> Executor:
     """Processes of this machine, started afresh: threads and a solver's memory do not survive a fork."""
     # Ctrl-C reaches the whole process group; it is the study's own process that stops the work.
     ignoring = (signal.SIGINT, signal.SIG_IGN)
-    return ProcessPoolExecutor(number, multiprocessing.get_context("spawn"), signal.signal, ignoring)
+    return _Processes(number, multiprocessing.get_context("spawn"), signal.signal, ignoring)
+
+
+class _Processes(ProcessPoolExecutor):
+    """Shut down, waits for nothing but what is being worked on.
+
+    Ctrl-C in the middle of `submit` leaves a task that nobody has in hand and no process is told of.
+    """
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = True) -> None:
+        super().shutdown(wait, cancel_futures=cancel_futures)
 
 
 @contextmanager

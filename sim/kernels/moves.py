@@ -9,7 +9,9 @@ the one that begins at the middle of the last move lies ½ h V behind where the 
     by h' V in implicit Euler, and by ½ (h + h') V in the average-acceleration rule,
 
 and where it was h V, the rest is made up for; of a structure that nothing holds, in the motion of its bodies relative
-to each other, and nothing while something touches it, for that would be left behind.
+to each other, and nothing while something touches it, for that would be left behind. Nothing either where the
+average-acceleration rule comes from the parts of a step (`parts.py`): what moves so soon after a blow is faster than
+whole steps resolve, and half a whole step of it tears stiff joints open.
 """
 
 from sim.kernels import layout as at
@@ -32,6 +34,8 @@ def carry(t, h, last_step, moved, touching):  # type: ignore[no-untyped-def]
     implicit = settings[BETA] == 0.0
     rest = (last_step if implicit else 0.5 * (last_step + h)) - moved
     if last_step == 0.0 or abs(rest) <= _SAME * h or touching or t[at.CONTACTS] != 0:
+        return
+    if not implicit and t[at.AFTER_PARTS] == 1:
         return
     last = views.per_body(t, at.LAST_VELOCITY)
     for i in range(t[at.MOVING], t[at.BODIES]):

@@ -10,7 +10,10 @@ from sim.world import World
 @pytest.mark.parametrize("shorter", [1, 4])
 @pytest.mark.parametrize("name", builtin_names())
 def test_no_scene_is_given_energy_by_its_time_integration(name: str, shorter: int) -> None:
-    """At its own step and a fourth of it, to a thousandth of what came in: the average-acceleration rule gives and takes a little in each step."""
+    """To a thousandth of what came in, at its own step and a fourth of it.
+
+    The average-acceleration rule gives and takes a little in each step.
+    """
     scene = load_scene(name)
     world = World(scene, dt=World(scene).dt / shorter)
     while not world.finished:

@@ -5,15 +5,14 @@
 NAME is a pattern such as "struck-*"; all of them by default. Ends with 1 when a target is missed.
 """
 
-import argparse
-import fnmatch
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 
-from calibration import calibrate_motion
+from calibrated_scenes import print_calibrations
+
+from calibration import MotionCalibration, calibrate_motion
 from calibration.tables import in_words
-from scene import parse_scene
 
 STRIP, BEAM, COLUMN = "rectangle 50x100 mm", "IPE 300", "HEB 200"
 DOWN, RIGHT = "[0, -1]", "[1, 0]"
@@ -111,35 +110,20 @@ def portals() -> Iterator[tuple[str, str]]:
     yield "struck-portal-column", scene(COLUMN, cut, ["AC", "CB", "BD", "ED"], motion(0.3, "C", RIGHT), at=going)
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("names", nargs="*", default=["*"])
-    parser.add_argument("--target-error", type=float, default=0.01)
-    asked = parser.parse_args()
-    missed = 0
-    print("| motion | met | peak, rest | reference ± | model | steps a second | tried | processor time |")
-    print("|---|---|---|---|---|---|---|---|")
-    for name, text in (*cantilevers(), *beams(), *portals()):
-        if not any(fnmatch.fnmatch(name, pattern) for pattern in asked.names):
-            continue
-        started = time.process_time()
-        result = calibrate_motion(parse_scene(text, name), asked.target_error, name)
-        spent = time.process_time() - started
-        missed += not result.target_met
-        best = result.best
-        cells = (
-            name,
-            "yes" if result.target_met else f"**no**: {result.limit}",
-            f"{100.0 * best.errors.peak:+.2f} %, {100.0 * best.errors.residual:+.2f} %",
-            f"{100.0 * result.uncertainty:.2f} %",
-            in_words(best.model, result.scene.members),
-            f"{1.0 / best.model.dt:.0f}",
-            f"{len(result.trials)}",
-            f"{spent:.1f} s",
-        )
-        print(f"| {' | '.join(cells)} |", flush=True)
-    return int(missed > 0)
+def figures(result: MotionCalibration, seconds: float) -> tuple[str, ...]:
+    best = result.best
+    return (
+        f"{100.0 * best.errors.peak:+.2f} %, {100.0 * best.errors.residual:+.2f} %",
+        f"{100.0 * result.uncertainty:.2f} %",
+        in_words(best.model, result.scene.members),
+        f"{1.0 / best.model.dt:.0f}",
+        f"{len(result.trials)}",
+        f"{seconds:.1f} s",
+    )
 
+
+HEADING = ("motion", "met", "peak, rest", "reference ±", "model", "steps a second", "tried", "processor time")
 
 if __name__ == "__main__":
-    sys.exit(main())
+    motions = (*cantilevers(), *beams(), *portals())
+    sys.exit(print_calibrations(__doc__, HEADING, motions, calibrate_motion, figures, time.process_time))

@@ -1,8 +1,8 @@
 """What rigid bodies with ductile joints do: pymunk, and one implicit solve for a whole structure inside its step."""
 
-from sim import chipmunk, collision_tree
+from sim import collision_tree, installed
 
-chipmunk.verify()
+installed.verify()
 collision_tree.verify()
 
 from sim.energy import Energy, energy  # noqa: E402

@@ -3,20 +3,15 @@
 A Chipmunk constraint is a C struct whose first field points to a table of four functions. `adopt` takes an ordinary
 pymunk constraint and gives it a table of our own, so that Chipmunk's solver calls our functions in its place.
 
-Offsets are in 8-byte words, for 64-bit builds of pymunk 7. `verify` holds them against the installed pymunk through
-its own setters, once, when `sim` is imported.
+Offsets are in 8-byte words, for 64-bit builds of pymunk 7. `sim.installed` holds them against the pymunk that there is.
 """
 
-import math
 from typing import Any
 
 import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 from pymunk.arbiter import _arbiter_from_dict, _arbiter_to_dict
-
-#: pymunk versions that the offsets were taken from.
-KNOWN_VERSIONS = "7.3"
 
 BODY_WORDS = 23
 MASS, MASS_INVERSE = 2, 3
@@ -37,15 +32,15 @@ ARBITERS, CONSTRAINTS = 29, 30
 BODY_FULL_WORDS = 31
 # How bodies sleep: the first of those that do so together, the next of them, and for how long one has been at rest.
 SLEEP_ROOT, SLEEP_NEXT, IDLE_TIME = 31, 32, 33
-_SLEEP_WORDS = 34
+SLEEP_WORDS = 34
 
 # cpSpace: gravity, and how much shapes may overlap; lists of bodies that move, of the first ones of those that sleep,
 # of constraints and of arbiters; the trees of shapes, static ones first.
 SPACE_GRAVITY, SPACE_SLOP = 1, 6
 MOVING_BODIES, SLEEPING_ROOTS, CONSTRAINTS_OF_SPACE, ARBITERS_OF_SPACE = 12, 15, 19, 20
 SPACE_SHAPES, SPACE_WORDS = 17, 21
-# Between them, for `verify` alone: how many steps there were, and how many shapes.
-_SPACE_STAMP, _SPACE_SHAPE_COUNTER = 10, 16
+# Between them: how many steps there were, and how many shapes.
+SPACE_STAMP, SPACE_SHAPE_COUNTER = 10, 16
 # cpArray: how many, as half a word; where they are.
 _COUNT, _ITEMS, _LIST_WORDS = 0, 1, 2
 
@@ -88,10 +83,6 @@ CACHED_IMPULSE: dict[type[pymunk.Constraint], tuple[int, int]] = {
     pymunk.GearJoint: (18, 1),
     pymunk.SimpleMotor: (15, 1),
 }
-
-
-class IncompatiblePymunk(ImportError):
-    """The installed pymunk lays its structs out in another way."""
 
 
 def address(pointer: object) -> int:
@@ -157,13 +148,13 @@ def save_body(body: pymunk.Body) -> np.ndarray:
 
     These are its transform, its pseudo-velocities, and for how long it has been at rest.
     """
-    raw = words(body_address(body), _SLEEP_WORDS)
+    raw = words(body_address(body), SLEEP_WORDS)
     return np.concatenate([raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1], raw[[IDLE_TIME]]])
 
 
 def restore_body(body: pymunk.Body, saved: np.ndarray) -> None:
     """Put back what `save_body` gave."""
-    raw = words(body_address(body), _SLEEP_WORDS)
+    raw = words(body_address(body), SLEEP_WORDS)
     raw[MASS:BODY_WORDS], raw[BIAS_VX : BIAS_SPIN + 1] = saved[: BODY_WORDS - MASS], saved[BODY_WORDS - MASS : -1]
     raw[IDLE_TIME] = saved[-1]
 
@@ -211,7 +202,7 @@ def sleeping_groups(space: pymunk.Space) -> list[list[int]]:
         group, body = [], root
         while body:
             group.append(body)
-            body = int(words(body, _SLEEP_WORDS, np.int64)[SLEEP_NEXT])
+            body = int(words(body, SLEEP_WORDS, np.int64)[SLEEP_NEXT])
         groups.append(group)
     return groups
 
@@ -235,111 +226,13 @@ def stock_kinds() -> np.ndarray:
     return np.array(
         [
             (words(address(c._constraint), 1, np.int64)[CONSTRAINT_CLASS], *CACHED_IMPULSE[type(c)])
-            for c in _one_of_each(a, b)
+            for c in one_of_each(a, b)
             if not isinstance(c, pymunk.SimpleMotor)
         ]
     )
 
 
-def verify() -> None:
-    """Check every offset against the installed pymunk.
-
-    Raises
-    ------
-    IncompatiblePymunk
-        When a field is not where it is expected; the message names the versions that work.
-    """
-    body = pymunk.Body(3.0, 5.0)
-    body.position = (7.0, 11.0)
-    body.velocity = (13.0, 17.0)
-    body.angle = 19.0
-    body.angular_velocity = 23.0
-    body.force, body.torque = (61.0, 67.0), 71.0
-    field = words(body_address(body), BODY_WORDS)
-    expected = {MASS: 3.0, MASS_INVERSE: 1.0 / 3.0, MOMENT: 5.0, MOMENT_INVERSE: 1.0 / 5.0, X: 7.0, Y: 11.0}
-    expected |= {FORCE_X: 61.0, FORCE_Y: 67.0, TORQUE: 71.0}
-    expected |= {VX: 13.0, VY: 17.0, ANGLE: 19.0, SPIN: 23.0, COSINE: math.cos(19.0), SINE: math.sin(19.0)}
-    expected |= {MINUS_SINE: -math.sin(19.0), COSINE_AGAIN: math.cos(19.0), ORIGIN: 7.0, ORIGIN + 1: 11.0, CENTRE: 0.0}
-    fits = all(abs(field[word] - value) <= 1e-12 for word, value in expected.items())
-
-    other = pymunk.Body(1.0, 1.0)
-    joint = pymunk.PivotJoint(body, other, (29.0, 31.0), (37.0, 41.0))
-    location = address(joint._constraint)
-    anchors = words(location + 8 * CONTROL, 4)
-    bodies = words(location, CONTROL, np.int64)
-    fits &= bool(np.array_equal(anchors, [29.0, 31.0, 37.0, 41.0]))
-    space = pymunk.Space()
-    space.collision_slop, space.gravity = 43.0, (67.0, 71.0)
-    space.add(body, other, joint)
-    fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[BODY_SPACE] == address(space._space)
-    fits &= words(address(space._space), SPACE_WORDS)[SPACE_SLOP] == 43.0
-    lib.cpSpaceSetTimestamp(space._space, 53)
-    lib.cpSpaceSetShapeIDCounter(space._space, 59)
-    numbers = words(address(space._space), SPACE_WORDS, np.int64)
-    fits &= numbers[_SPACE_STAMP] & 0xFFFFFFFF == 53 and numbers[_SPACE_SHAPE_COUNTER] == 59
-    fits &= bool(np.array_equal(words(address(space._space), SPACE_WORDS)[SPACE_GRAVITY:][:2], [67.0, 71.0]))
-    fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == address(space._space)
-    fits &= words(body_address(body), BODY_FULL_WORDS, np.int64)[CONSTRAINTS] == location
-    second = pymunk.PivotJoint(other, body, (0.0, 0.0))
-    space.add(second)
-    after = words(address(second._constraint), CONTROL, np.int64)
-    fits &= after[CONSTRAINT_NEXT_A] == location and after[CONSTRAINT_NEXT_B] == location
-    space.remove(second)
-    space.remove(joint)
-    fits &= words(location, CONTROL, np.int64)[CONSTRAINT_SPACE] == 0
-    fits &= bodies[CONSTRAINT_BODY_A] == body_address(body) and bodies[CONSTRAINT_BODY_B] == body_address(other)
-    fits &= _offsets("cpArbiter", e=0, a=ARBITER_SHAPE_A, n=ARBITER_NORMAL, state=ARBITER_STATE)
-    fits &= _offsets("cpArbiter", thread_a=ARBITER_NEXT_A, thread_b=ARBITER_NEXT_B, contacts=ARBITER_CONTACTS)
-    fits &= _offsets("struct cpContact", r2=CONTACT_R2, jnAcc=CONTACT_NORMAL_IMPULSE, hash=CONTACT_HASH)
-    for constraint in _one_of_each(body, other):
-        cached_impulse(constraint)[:] = 47.0
-        fits &= abs(constraint.impulse - math.hypot(*cached_impulse(constraint))) <= 1e-12
-    check(fits and _lists_fit())
-
-
-def check(fits: bool) -> None:
-    """Refuse the installed pymunk unless it fits.
-
-    Raises
-    ------
-    IncompatiblePymunk
-        The message names the versions that work.
-    """
-    if not fits:
-        raise IncompatiblePymunk(
-            f"pymunk {pymunk.version} lays out its bodies or constraints in a way that sim does not know; "
-            f"install version {KNOWN_VERSIONS}: pip install 'pymunk>=7.3,<7.4'"
-        )
-
-
-def _lists_fit() -> bool:
-    """Whether a space's lists hold what they should, awake and asleep."""
-    space, bodies = pymunk.Space(), [pymunk.Body(1.0, 1.0) for _ in range(2)]
-    joint = pymunk.PivotJoint(bodies[0], bodies[1], (0.0, 0.0))
-    space.add(*bodies, joint, *(pymunk.Circle(body, 1.0) for body in bodies))
-    space.sleep_time_threshold = 1.0
-    addresses = [body_address(body) for body in bodies]
-    fits = listed(space, MOVING_BODIES).tolist() == addresses
-    fits &= listed(space, CONSTRAINTS_OF_SPACE).tolist() == [address(joint._constraint)]
-    joint.collide_bodies = True
-    space.step(0.5)
-    arbiter = int(words(addresses[0], BODY_FULL_WORDS, np.int64)[ARBITERS])
-    fits &= listed(space, ARBITERS_OF_SPACE).tolist() == [arbiter]
-    fits &= words(addresses[0], _SLEEP_WORDS)[IDLE_TIME] == 0.5
-    bodies[0].sleep()
-    bodies[1].sleep_with_group(bodies[0])
-    fits &= sleeping_groups(space) == [addresses] and len(listed(space, MOVING_BODIES)) == 0
-    wake_all(space._space)
-    return fits and sorted(listed(space, MOVING_BODIES).tolist()) == sorted(addresses)
-
-
-def _offsets(struct: str, **words: int) -> bool:
-    """Whether the fields of a struct that pymunk itself describes begin at these words."""
-    fields = dict(ffi.typeof(struct).fields)
-    return all(fields[name].offset == 8 * word for name, word in words.items())
-
-
-def _one_of_each(a: pymunk.Body, b: pymunk.Body) -> list[pymunk.Constraint]:
+def one_of_each(a: pymunk.Body, b: pymunk.Body) -> list[pymunk.Constraint]:
     """Every kind of constraint with a cached impulse."""
     here = (0.0, 0.0)
     return [

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 
-from sim.chipmunk import SPACE_SHAPES, SPACE_WORDS, address, check, words
+from sim.chipmunk import SPACE_SHAPES, SPACE_WORDS, address, words
+from sim.installed import check, is_address
 
 # cpBBTree: its kind, the set of its leaves, root, pools and counter of changes.
 _KIND, _LEAVES, _ROOT, _PAIR_POOL, _STAMP, _TREE_WORDS = 0, 5, 6, 8, 10, 11
@@ -188,7 +189,7 @@ def verify() -> None:
 def _is_whole(tree: int, count: int) -> bool:
     """Whether there is a set of so many leaves where there should be."""
     held = _word(tree, _LEAVES)
-    if not 1 << 16 < held < 1 << 47 or held % 8:
+    if not is_address(held):
         return False
     sizes = _word(held, _SIZES)
     return sizes & _HALF == count and count <= sizes >> 32 < 1000

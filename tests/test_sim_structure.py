@@ -14,7 +14,6 @@ from twin import Twin
 
 import sim
 from sim import AVERAGE_ACCELERATION, DuctileJoint, ElasticPlastic, Limits, Model, SolverError, Structure
-from sim.chipmunk import IncompatiblePymunk, verify
 
 
 def piece(space: pymunk.Space, mass: float, moment: float, x: float, y: float, angle: float = 0.0) -> pymunk.Body:
@@ -395,13 +394,6 @@ def test_viscous_damping_takes_its_own_share_of_the_energy() -> None:
     # pymunk's kinetic energy is m v² + I ω², without the half.
     assert left == pytest.approx(decay, rel=0.1)
     assert joint.structure.viscous_work[0] == pytest.approx(1.0 - decay, rel=0.02)
-
-
-def test_verify_notices_another_layout(monkeypatch: pytest.MonkeyPatch) -> None:
-    verify()
-    monkeypatch.setattr("sim.chipmunk.SPIN", 13)
-    with pytest.raises(IncompatiblePymunk, match="install version"):
-        verify()
 
 
 def test_same_input_same_bytes() -> None:

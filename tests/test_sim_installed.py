@@ -1,0 +1,30 @@
+"""That another layout of Chipmunk's structs is noticed, field by field."""
+
+import pytest
+
+from sim import chipmunk
+from sim.installed import IncompatiblePymunk, verify
+
+# All but the lengths of structs, what is no offset, and the first word of a struct, which has none before it; the trees
+# of shapes are looked at by `sim.collision_tree`.
+OFFSETS = [
+    name
+    for name, value in vars(chipmunk).items()
+    if name.isupper()
+    and not name.startswith("_")
+    and isinstance(value, int)
+    and not name.endswith(("_WORDS", "_BYTES"))
+    if name not in ("FIRST", "CONSTRAINT_CLASS", "SPACE_SHAPES")
+]
+
+
+def test_the_installed_pymunk_fits() -> None:
+    verify()
+    assert len(OFFSETS) > 60
+
+
+@pytest.mark.parametrize("name", OFFSETS)
+def test_a_field_that_lies_a_word_earlier_is_noticed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(chipmunk, name, getattr(chipmunk, name) - 1)
+    with pytest.raises(IncompatiblePymunk, match="install version 7"):
+        verify()

@@ -14,6 +14,7 @@ from capacity.behaviour import from_elastic_rotation, reduced, stiffness_and_dam
 from sim import chipmunk
 from sim.joint_checks import check_bodies, check_law, check_numbers
 from sim.kernels import compiled_callbacks
+from sim.kernels.layout import GEOMETRY
 from sim.laws import ElasticPlastic, Law
 from sim.limits import NO_LIMITS, Limits
 
@@ -92,8 +93,10 @@ class DuctileJoint(pymunk.Constraint):
         self.on_break = on_break
         rest = (direction - a.angle, direction - b.angle)
         axes = [f(angle) for angle in rest for f in (math.cos, math.sin)]
-        self.geometry = np.array([*_anchor(a, self.at), *_anchor(b, self.at), *rest, turn, *axes, length / 24.0])
-        check_numbers(damping, scheme, self.geometry)
+        self._geometry: np.ndarray | None = np.array(
+            [*_anchor(a, self.at), *_anchor(b, self.at), *rest, turn, *axes, length / 24.0]
+        )
+        check_numbers(damping, scheme, self._geometry)
         self._structure: Structure | None = None
         self._index = 0
         self._attach(a, b)
@@ -110,6 +113,7 @@ class DuctileJoint(pymunk.Constraint):
         return {
             "bodies": (self.a, self.b),
             "own": {name: value for name, value in vars(self).items() if not name.startswith("_")},
+            "geometry": self.geometry.copy(),
             "place": (self._structure, self._index),
             "collide_bodies": self.collide_bodies,
             "asks": self.pre_solve is not None,
@@ -117,6 +121,7 @@ class DuctileJoint(pymunk.Constraint):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state["own"])
+        self._geometry = state["geometry"]
         self._structure, self._index = state["place"]
         self._attach(*state["bodies"])
         self.collide_bodies = state["collide_bodies"]
@@ -191,8 +196,8 @@ class DuctileJoint(pymunk.Constraint):
         self.pre_solve = group
 
     def join(self, structure: Structure, index: int) -> None:
-        """Become joint ``index`` of ``structure``; called by the structure itself."""
-        self._structure, self._index = structure, index
+        """Become joint ``index`` of ``structure``, whose memory has its geometry; called by the structure itself."""
+        self._structure, self._index, self._geometry = structure, index, None
         self.pre_solve = None
 
     def point_on(self, body: pymunk.Body) -> tuple[float, float]:
@@ -214,6 +219,15 @@ class DuctileJoint(pymunk.Constraint):
         a, b = (self.rates_on(body) @ [*body.velocity, body.angular_velocity] for body in (self.a, self.b))
         rates: np.ndarray = b - a
         return rates
+
+    @property
+    def geometry(self) -> np.ndarray:
+        """Anchors, rest angles and axes on the two bodies, (12,), as `sim.kernels.layout` lists them."""
+        if self._geometry is not None:
+            return self._geometry
+        assert self._structure is not None
+        row: np.ndarray = self._structure.tables[GEOMETRY][self._index]
+        return row
 
     @property
     def structure(self) -> Structure | None:

@@ -177,9 +177,16 @@ def test_arrays_over_joints_of_several_structures_and_a_broken_one() -> None:
     assert arrays.dissipated[1] == pytest.approx(10.0 * 0.05, rel=0.05)
 
 
-def test_a_joint_takes_less_than_two_kilobytes() -> None:
+@pytest.mark.parametrize("shared", [True, False])
+def test_a_joint_takes_less_than_two_kilobytes(shared: bool) -> None:
     """All that `sim` keeps for a joint of a chain, without what pymunk keeps for any constraint and for bodies."""
-    count, law = 1000, ElasticPlastic((1e6, 1e6, 1e4), (1e4, 1e4, 1e3))
+    count, numbers = 1000, itertools.count(1)
+
+    def law() -> ElasticPlastic:
+        m_max = 1e3 * (1.0 if shared else float(next(numbers)))
+        return ElasticPlastic((1e6, 1e6, 1e4), (1e4, 1e4, m_max))
+
+    one = law()
     space = pymunk.Space()
     bodies = [space.static_body, *(pymunk.Body(1.0, 1.0) for _ in range(count))]
     for i, body in enumerate(bodies[1:]):
@@ -188,7 +195,10 @@ def test_a_joint_takes_less_than_two_kilobytes() -> None:
     gc.collect()
     tracemalloc.start()
     try:
-        joints = [DuctileJoint(a, b, (float(i), 0.0), law) for i, (a, b) in enumerate(itertools.pairwise(bodies))]
+        joints = [
+            DuctileJoint(a, b, (float(i), 0.0), one if shared else law())
+            for i, (a, b) in enumerate(itertools.pairwise(bodies))
+        ]
         structure = Structure(joints)
         gc.collect()
         taken = tracemalloc.take_snapshot().filter_traces(

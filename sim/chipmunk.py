@@ -42,7 +42,7 @@ SPACE_SHAPES, SPACE_WORDS = 17, 21
 # Between them: how many steps there were, and how many shapes.
 SPACE_STAMP, SPACE_SHAPE_COUNTER = 10, 16
 # cpArray: how many, as half a word; where they are.
-_COUNT, _ITEMS, _LIST_WORDS = 0, 1, 2
+LIST_COUNT, _ITEMS, _LIST_WORDS = 0, 1, 2
 
 # cpArbiter: the contacts between two shapes.
 ARBITER_FRICTION, ARBITER_SURFACE = 1, 2
@@ -162,7 +162,7 @@ def restore_body(body: pymunk.Body, saved: np.ndarray) -> None:
 def listed(space: pymunk.Space, which: int) -> np.ndarray:
     """Addresses in one of a space's lists, in order, to be changed in place."""
     head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), _LIST_WORDS, np.int64)
-    count = int(head[_COUNT]) & 0xFFFFFFFF
+    count = int(head[LIST_COUNT]) & 0xFFFFFFFF
     return words(int(head[_ITEMS]), count, np.int64) if count else np.zeros(0, dtype=np.int64)
 
 
@@ -170,7 +170,7 @@ def list_anew(space: pymunk.Space, which: int, order: list[int]) -> None:
     """Put one of a space's lists into another order, or leave out some of it."""
     listed(space, which)[: len(order)] = order
     head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), _LIST_WORDS, np.int32)
-    head[_COUNT] = len(order)
+    head[LIST_COUNT] = len(order)
 
 
 def shape_at(location: int) -> pymunk.Shape:
@@ -210,7 +210,7 @@ def sleeping_groups(space: pymunk.Space) -> list[list[int]]:
 def wake_all(space: object) -> None:
     """Wake all bodies of a cpSpace."""
     roots = words(int(words(address(space), SPACE_WORDS, np.int64)[SLEEPING_ROOTS]), _LIST_WORDS, np.int64)
-    while int(roots[_COUNT]) & 0xFFFFFFFF:
+    while int(roots[LIST_COUNT]) & 0xFFFFFFFF:
         lib.cpBodyActivate(ffi.cast("cpBody *", int(words(int(roots[_ITEMS]), 1, np.int64)[0])))
 
 

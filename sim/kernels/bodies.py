@@ -8,6 +8,7 @@ from sim.chipmunk import (
     BIAS_SPIN,
     BIAS_VX,
     BODY_FULL_WORDS,
+    BODY_SPACE,
     BODY_WORDS,
     CENTRE,
     COSINE,
@@ -19,6 +20,8 @@ from sim.chipmunk import (
     MOMENT_INVERSE,
     ORIGIN,
     SINE,
+    SPACE_GRAVITY,
+    SPACE_WORDS,
     SPIN,
     TORQUE,
     VX,
@@ -27,7 +30,7 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.inertia import give_back, mass_of, moment_of, weigh
-from sim.kernels.layout import INERTIA_I
+from sim.kernels.layout import INERTIA_I, INERTIA_M
 from sim.memory import floats, integers, kernel
 
 # A movement without velocity below this [m, rad], over 1 + |x|, is rounding.
@@ -58,12 +61,19 @@ def put(body, x, y, angle):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def load_velocities(t, velocity):  # type: ignore[no-untyped-def]
-    """Copy the bodies' velocities into ``velocity``."""
-    body_at = views.body_at(t)
-    for i in range(t[at.BODIES]):
+def load_velocities(body_at, velocity):  # type: ignore[no-untyped-def]
+    """Copy the velocities of the bodies at these addresses into ``velocity``."""
+    for i in range(len(body_at)):
         b = floats(body_at[i], BODY_WORDS)
         velocity[i, 0], velocity[i, 1], velocity[i, 2] = b[VX], b[VX + 1], b[SPIN]
+
+
+@kernel
+def load_positions(body_at, position):  # type: ignore[no-untyped-def]
+    """Copy their positions and angles into ``position``."""
+    for i in range(len(body_at)):
+        b = floats(body_at[i], BODY_WORDS)
+        position[i, 0], position[i, 1], position[i, 2] = b[X], b[X + 1], b[ANGLE]
 
 
 @kernel
@@ -78,11 +88,11 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
     spin of those that move, whether any touches something, and a number that is finite if all are where they may be and
     forces lead none beyond all bounds.
     """
-    body_at, shift, moving = views.body_at(t), views.shift(t), t[at.MOVING]
+    body_at, shift, moving, force = views.body_at(t), views.shift(t), t[at.MOVING], views.per_body(t, at.LAST_FORCE)
     start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
     position, velocity, weight = views.per_body(t, at.LAST_POSITION), views.per_body(t, at.VELOCITY), views.weight(t)
     fastest, touching, pushed, shifted = 0.0, False, t[at.SHIFTED] == 1, False
-    bounded = 0.0
+    bounded, forced, rate = 0.0, False, 1.0 / h
     for i in range(t[at.BODIES]):
         b = floats(body_at[i], BODY_WORDS)
         if i < moving:
@@ -93,6 +103,8 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
             bounded += reached(b, h)
             weigh(weight, i, b)
             touching = touching or integers(body_at[i], BODY_FULL_WORDS)[ARBITERS] != 0
+            fx, fy, moment = force_on(body_at[i], rate * x, rate * y, rate * w)
+            forced = forced or fx != force[i, 0] or fy != force[i, 1] or moment != force[i, 2]
         for axis in range(3):
             v = b[SPIN] if axis == 2 else b[VX + axis]
             start[i, axis], velocity[i, axis] = v, v
@@ -107,8 +119,18 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
             # A structure that is new does not know where its bodies were.
             if abs(rest) > _UNMOVED * (1.0 + abs(place)):
                 shift[i, 3 + axis], shifted = rest, True
-    t[at.SHIFTED] = 1 if shifted else 0
+    t[at.SHIFTED], t[at.FORCED] = 1 if shifted else 0, 1 if forced else 0
     return fastest, touching, bounded
+
+
+@kernel
+def force_on(body, x, y, turn):  # type: ignore[no-untyped-def]
+    """Force and moment from outside on a body, those of an impulse that has made it faster by so much [1/s²] too."""
+    b, space, gx, gy = floats(body, BODY_WORDS), integers(body, BODY_FULL_WORDS)[BODY_SPACE], 0.0, 0.0
+    if space != 0:
+        gx, gy = floats(space, SPACE_WORDS)[SPACE_GRAVITY], floats(space, SPACE_WORDS)[SPACE_GRAVITY + 1]
+    mass = mass_of(b)
+    return b[FORCE_X] + mass * (gx + x), b[FORCE_Y] + mass * (gy + y), b[TORQUE] + moment_of(b) * turn
 
 
 @kernel
@@ -140,14 +162,15 @@ def depart(t):  # type: ignore[no-untyped-def]
 
 @kernel
 def take_in(t):  # type: ignore[no-untyped-def]
-    """Book what changed the bodies' velocities since they were written, and let the solver know; whether any did.
+    """Book what changed the bodies' velocities since they were written, and let the solver know.
 
-    Before the first solve of a step, nothing has been written or booked in it.
+    Before the first solve of a step, nothing has been written or booked in it. Returns whether any was changed, and
+    twice the kinetic energy [J], which is finite if all velocities are.
     """
     body_at, weight, first = views.body_at(t), views.weight(t), t[at.FRESH] == 1
     velocity, written = views.per_body(t, at.VELOCITY), views.per_body(t, at.WRITTEN)
     start, external = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.EXTERNAL)
-    differs = False
+    differs, energy = False, 0.0
     for i in range(t[at.MOVING]):
         if first:
             for axis in range(3):
@@ -164,12 +187,14 @@ def take_in(t):  # type: ignore[no-untyped-def]
             velocity[i, 1] += y
             velocity[i, 2] += w * (moment / weight[i, INERTIA_I])
             written[i, 0], written[i, 1], written[i, 2] = b[VX], b[VX + 1], b[SPIN]
+        x, y, w = velocity[i, 0], velocity[i, 1], velocity[i, 2]
+        energy += weight[i, INERTIA_M] * (x * x + y * y) + weight[i, INERTIA_I] * w * w
     for i in range(t[at.MOVING], t[at.BODIES]):
         b = floats(body_at[i], BODY_WORDS)
         differs = differs or velocity[i, 0] != b[VX] or velocity[i, 1] != b[VX + 1] or velocity[i, 2] != b[SPIN]
         for out in (velocity, written):
             out[i, 0], out[i, 1], out[i, 2] = b[VX], b[VX + 1], b[SPIN]
-    return differs
+    return differs, energy
 
 
 @kernel
@@ -203,12 +228,3 @@ def store_velocities(t, velocity):  # type: ignore[no-untyped-def]
     for i in range(t[at.MOVING]):
         b = floats(body_at[i], BODY_WORDS)
         b[VX], b[VX + 1], b[SPIN] = velocity[i, 0], velocity[i, 1], velocity[i, 2]
-
-
-@kernel
-def load_positions(t, position):  # type: ignore[no-untyped-def]
-    """Copy the bodies' positions and angles into ``position``."""
-    body_at = views.body_at(t)
-    for i in range(t[at.BODIES]):
-        b = floats(body_at[i], BODY_WORDS)
-        position[i, 0], position[i, 1], position[i, 2] = b[X], b[X + 1], b[ANGLE]

@@ -43,7 +43,7 @@ from sim.kernels.layout import (
     WHERE,
 )
 from sim.kernels.overlap import MOST_SWEEPS, push_apart
-from sim.kernels.residual import advance, linearise, reach_of
+from sim.kernels.residual import descend, reach_of
 from sim.kernels.rows import add_row, direction, other_velocity, own_velocity, push_loose, sum_up
 from sim.memory import clear, floats, kernel
 
@@ -216,5 +216,4 @@ def strike(c, t, places, touches, change):  # type: ignore[no-untyped-def]
             velocity[i, 2] += w * weight[i, INVERSE_I]
     # H ΔV = J_cᵀ Δj, and Δλ = -(β + δ) h² D J ΔV.
     solve(t, 0, solution)
-    linearise(t, views.settings(t)[STEP] * reach_of(t), 0.0)
-    advance(t, 1.0)
+    descend(t, views.settings(t)[STEP] * reach_of(t), 0.0)

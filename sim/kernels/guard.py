@@ -97,7 +97,7 @@ def take_out(t, energy):  # type: ignore[no-untyped-def]
     if energy <= 0.0:
         return
     body_at, moving, velocity = views.body_at(t), t[at.MOVING], views.per_body(t, at.SOLUTION)
-    load_velocities(t, velocity)
+    load_velocities(body_at, velocity)
     frame, inner = rigid_motion(t, velocity), 0.0
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)

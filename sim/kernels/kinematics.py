@@ -47,18 +47,20 @@ def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
     """Let go of joints that are no longer in the space; the others start from ``ratio`` times their last impulses."""
     active, joint_at, joint_bodies = views.active(t), views.joint_at(t), views.joint_bodies(t)
     impulse, scale = views.per_joint(t, at.IMPULSE), views.scale(t)
-    moving, held = t[at.MOVING], False
+    moving, held, holding = t[at.MOVING], False, 0
     for k in range(t[at.JOINTS]):
         if active[k] != 0 and integers(joint_at[k], CONSTRAINT_SPACE + 1)[CONSTRAINT_SPACE] == 0:
             if last_step > 0.0:
                 let_go(t, k, last_step)
+                t[at.FORCED] = 1
             active[k] = 0
+        holding += active[k]
         held = held or (active[k] != 0 and (joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving))
         for i in range(3):
             impulse[k, i] *= ratio * active[k]
         if t[at.BREAKABLE] == 1:
             scale[k] = 1.0
-    t[at.FREE] = 0 if held else 1
+    t[at.FREE], t[at.HOLDING] = 0 if held else 1, holding
 
 
 @kernel

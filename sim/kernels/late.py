@@ -57,7 +57,7 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
                     b[VX] = touches[k, LOOSE_START] + share * pushes[i, 0]
                     b[VX + 1] = touches[k, LOOSE_START + 1] + share * pushes[i, 1]
                     b[SPIN] = touches[k, LOOSE_START + 2] + share * pushes[i, 2]
-        load_positions(t, views.per_body(t, at.BEGUN_AT))
+        load_positions(body_at, views.per_body(t, at.BEGUN_AT))
         for i in range(t[at.MOVING]):
             move(body_at[i], -late * start[i, 0], -late * start[i, 1], -late * start[i, 2])
         for i in range(t[at.BODIES]):

@@ -33,7 +33,10 @@ PARTS, AHEAD, AFTER_PARTS = 25, 26, 30
 PUSHED, ASTRAY = 28, 29
 # Kinds of Chipmunk's own constraints.
 KINDS = 31
-_FIRST_ADDRESS = 32
+# In this step: whether forces from outside differ from the last one's; whether bodies were moved on at its start, see
+# `moves`; how many joints hold; whether nothing but those changes the bodies' velocities while they are solved.
+FORCED, CARRYING, HOLDING, ALONE = 32, 33, 34, 35
+_FIRST_ADDRESS = 36
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

@@ -29,7 +29,9 @@ _SAME = 1e-9
 def carry(t, h, last_step, moved, touching):  # type: ignore[no-untyped-def]
     """Have bodies that have ``moved`` for so long moved as far as they should be, and note how long that is."""
     settings, body_at = views.settings(t), views.body_at(t)
-    clear(views.per_body(t, at.CARRIED))
+    if t[at.CARRYING] == 1:
+        clear(views.per_body(t, at.CARRIED))
+        t[at.CARRYING] = 0
     settings[MOVE] = moved
     implicit = settings[BETA] == 0.0
     rest = (last_step if implicit else 0.5 * (last_step + h)) - moved
@@ -41,6 +43,7 @@ def carry(t, h, last_step, moved, touching):  # type: ignore[no-untyped-def]
     for i in range(t[at.MOVING], t[at.BODIES]):
         if last[i, 0] != 0.0 or last[i, 1] != 0.0 or last[i, 2] != 0.0:
             return
+    t[at.CARRYING] = 1
     frame = rigid_motion(t, last)
     for i in range(t[at.MOVING]):
         u, v, w = relative_velocity(body_at[i], last[i], frame)

@@ -25,9 +25,9 @@ from sim.kernels.layout import STEP, TANGENT
 from sim.kernels.residual import (
     advance,
     apply,
+    descend,
     descent,
     gather,
-    linearise,
     motion_scale,
     reach_of,
     respond,
@@ -84,24 +84,29 @@ def pull(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def newton_direction(t, factor, spring):  # type: ignore[no-untyped-def]
-    """ΔV and Δλ with the factor at hand; returns how fast the energy falls along ΔV, and the spring's ΔΛ."""
+def newton_step(t, factor, spring):  # type: ignore[no-untyped-def]
+    """Find ΔV and Δλ with the factor at hand, and go there.
+
+    Returns how fast the energy falls along ΔV at first, and the spring's ΔΛ.
+    """
     solution, change, fall = views.per_body(t, at.SOLUTION), 0.0, 0.0
     gather(t, views.per_joint(t, at.RESIDUAL), solution)
     solve(t, 0, solution)
     if t[at.SPREAD] == 1:
         change = spread_step(t, spring)
         fall = spring * along(t, views.per_body(t, at.PATTERN), solution)
-    return fall + linearise(t, factor, 1.0), change
+    fall += descend(t, factor, 1.0)
+    if t[at.SPREAD] == 1:
+        advance_spread(t, change)
+    return fall, change
 
 
 @kernel
-def go(t, length, spring_change):  # type: ignore[no-untyped-def]
-    """Go ``length`` of the direction found; returns what `measure` does there, for the laws as they are."""
+def go_on(t, length, change):  # type: ignore[no-untyped-def]
+    """Go ``length`` of the last Newton step, and of the spring's ``change`` in it, once more."""
     advance(t, length)
     if t[at.SPREAD] == 1:
-        advance_spread(t, length * spring_change)
-    return measure(t)
+        advance_spread(t, length * change)
 
 
 @kernel
@@ -109,15 +114,16 @@ def predict(t, factor, enough):  # type: ignore[no-untyped-def]
     """The first solve of a step: goes on with the tangents of a last step that flowed, or takes all joints as elastic.
 
     At the velocities without joints all of them may seem to yield, and from there the way to the solution is long.
-    Returns what `measure` does then.
+    Returns what `measure` does then, and the `motion_scale`.
     """
     if t[at.FLOWING] == 0:
         return predict_elastic(t, factor, enough)
     strip_tangents(t)
     _, _, spring = measure_along_lines(t, views.response(t), TANGENT)
     factorise_matrix(t, factor)
-    _, change = newton_direction(t, factor, spring)
-    return go(t, 1.0, change)
+    newton_step(t, factor, spring)
+    error, size, spring = measure(t)
+    return error, size, spring, motion_scale(t)
 
 
 @kernel
@@ -125,18 +131,19 @@ def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
     """Take every joint as elastic; refined where joints are so stiff that they seem to yield by rounding alone."""
     before, size, spring = measure_along_lines(t, views.stiffness(t), 0)
     factorise_matrix(t, factor)
-    error = before
+    error, motion = before, 0.0
     for _ in range(_MOST_REFINEMENTS):
-        _, change = newton_direction(t, factor, spring)
-        error, size, spring = go(t, 1.0, change)
-        if error <= enough * (size + motion_scale(t)):
+        newton_step(t, factor, spring)
+        error, size, spring = measure(t)
+        motion = motion_scale(t)
+        if error <= enough * (size + motion):
             break
         rest, _, spring = measure_along_lines(t, views.stiffness(t), 0)
         if rest > 0.1 * before or rest <= enough * size:
             error, size, spring = measure(t)
             break
         before = rest
-    return error, size, spring
+    return error, size, spring, motion
 
 
 @kernel
@@ -149,21 +156,21 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
     factor, tolerance, rounding = settings[STEP] * reach_of(t), settings[at.TOLERANCE], settings[at.ROUNDING]
     steps = 0
     if predicting:
-        error, size, spring = predict(t, factor, tolerance)
+        error, size, spring, motion = predict(t, factor, tolerance)
         steps = 1
     else:
         error, size, spring = measure(t)
-    motion = motion_scale(t)
+        motion = motion_scale(t)
     converged = error <= tolerance * (size + motion) + rounding
     best = error
     while not converged and steps < MOST_NEWTON_STEPS and math.isfinite(error):
         steps += 1
         if steps == _PATIENCE:
-            error, size, spring = predict_elastic(t, factor, tolerance)
+            error, size, spring, _ = predict_elastic(t, factor, tolerance)
             gone = 0.0
         else:
             factorise_matrix(t, factor)
-            start, change = newton_direction(t, factor, spring)
+            start, change = newton_step(t, factor, spring)
             error, size, spring, gone = search(t, factor, start, change, tolerance, motion, steps >= _PATIENCE)
         converged = error <= tolerance * (size + motion) + rounding
         # Below this it is rounding that remains, and another step would not take it away; one that was cut short says
@@ -178,7 +185,7 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
 
 @kernel
 def search(t, factor, start, change, tolerance, motion, careful):  # type: ignore[no-untyped-def]
-    """Line search: how far to go along the direction found; returns what `measure` does there, and how far it went.
+    """Line search: how far to go of the step just taken; returns what `measure` does there, and how far it went.
 
     Along it the energy is convex, and falls with ``start`` at first: where it rises too steeply in the end, its least
     value lies further back. How steeply it falls is piecewise straight, with jumps of slope where joints begin or cease
@@ -186,12 +193,14 @@ def search(t, factor, start, change, tolerance, motion, careful):  # type: ignor
     that come after many others are ``careful``: by false position, which ends nearer to a kink.
     """
     length, low, high, line_low, line_high = 1.0, 0.0, 1.0, 1.0, 1.0
-    gone, last = 0.0, False
+    gone, last = 1.0, False
     fall_low, fall_high = start, 0.0
     error, size, spring = 0.0, 0.0, 0.0
     for attempt in range(MOST_SEARCHES):
-        error, size, spring = go(t, length - gone, change)
-        gone = length
+        if length != gone:
+            go_on(t, length - gone, change)
+            gone = length
+        error, size, spring = measure(t)
         if last or error <= tolerance * (size + motion):
             break
         fall, bend = slope_along(t, factor, spring, change)

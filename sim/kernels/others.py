@@ -146,14 +146,6 @@ def struck_besides(others, pushes):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def load_others(others, out):  # type: ignore[no-untyped-def]
-    """Velocities of the others."""
-    for i in range(len(others)):
-        b = floats(others[i], BODY_WORDS)
-        out[i, 0], out[i, 1], out[i, 2] = b[VX], b[VX + 1], b[SPIN]
-
-
-@kernel
 def touched(head, body):  # type: ignore[no-untyped-def]
     """Whether a group touches a body that is not its own."""
     c = head
@@ -167,14 +159,6 @@ def touched(head, body):  # type: ignore[no-untyped-def]
                 return True
         c = t[at.NEXT]
     return False
-
-
-@kernel
-def load_places(others, out):  # type: ignore[no-untyped-def]
-    """Positions and angles of the others."""
-    for i in range(len(others)):
-        b = floats(others[i], BODY_WORDS)
-        out[i, 0], out[i, 1], out[i, 2] = b[X], b[X + 1], b[ANGLE]
 
 
 @kernel

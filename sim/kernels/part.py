@@ -116,7 +116,7 @@ def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
         t = views.control(c)
         places, touches = views.places(t), views.touches(t)
         conclude(c, t)
-        load_velocities(t, views.per_body(t, at.LAST_VELOCITY))
+        load_velocities(views.body_at(t), views.per_body(t, at.LAST_VELOCITY))
         for k in range(t[at.CONTACTS]):
             contact = floats(places[k, WHERE], CONTACT_WORDS)
             touches[k, EARLIER] += contact[CONTACT_NORMAL_IMPULSE]

@@ -28,7 +28,7 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blow import OVER, flows, forget, grow_older, is_over, numerical_loss
-from sim.kernels.bodies import move, store_velocities
+from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
 from sim.kernels.late import go_back, lateness
 from sim.kernels.layout import (
     BLOW,
@@ -46,8 +46,6 @@ from sim.kernels.layout import (
 from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_links
 from sim.kernels.newton import restart
 from sim.kernels.others import (
-    load_others,
-    load_places,
     others_of,
     put_back,
     release,
@@ -68,7 +66,7 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     pushes = release(head, others)
     struck = struck_besides(others, pushes)
     begun = np.empty((len(others), 3))
-    load_places(others, begun)
+    load_positions(others, begun)
     late = lateness(head)
     go_back(head, others, pushes, late)
     scale_all(pushes, open_step(head, late, parts))
@@ -79,7 +77,7 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     h = views.settings(views.control(head))[STEP]
     flowed, dissipated = False, numerical_loss(head)
     for _ in range(parts - 1):
-        load_others(others, before)
+        load_velocities(others, before)
         begin_part(head, others, pushes)
         prepare_links(links, h)
         c = head

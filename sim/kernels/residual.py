@@ -136,20 +136,29 @@ def gather(t, per_joint, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def linearise(t, factor, with_residual):  # type: ignore[no-untyped-def]
-    """Δλ = r - factor D J ΔV, r only ``with_residual`` (1 or 0); returns r · J ΔV, how fast the energy falls."""
+def descend(t, factor, with_residual):  # type: ignore[no-untyped-def]
+    """Δλ = r - factor D J ΔV, r only ``with_residual`` (1 or 0), and all of that step: λ += Δλ, V += M⁻¹ Jᵀ Δλ.
+
+    Returns r · J ΔV, how fast the energy falls at first.
+    """
     joint_bodies, gradient, response = views.joint_bodies(t), views.gradient(t), views.response(t)
     residual, solution = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.SOLUTION)
-    slope, d = views.per_joint(t, at.SLOPE), TANGENT
-    fall = 0.0
+    slope, impulse, d = views.per_joint(t, at.SLOPE), views.per_joint(t, at.IMPULSE), TANGENT
+    weight, velocity, moving, fall = views.weight(t), views.per_body(t, at.VELOCITY), t[at.MOVING], 0.0
     for k in range(t[at.JOINTS]):
         r0, r1, r2 = with_residual * residual[k, 0], with_residual * residual[k, 1], with_residual * residual[k, 2]
-        x, y, z = rates(gradient, k, solution, joint_bodies[k, 0], solution, joint_bodies[k, 1])
+        ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
+        x, y, z = rates(gradient, k, solution, ia, solution, ib)
         fall += r0 * x + r1 * y + r2 * z
         x, y, z = factor * x, factor * y, factor * z
-        slope[k, 0] = r0 - (response[k, d] * x + response[k, d + 1] * y + response[k, d + 2] * z)
-        slope[k, 1] = r1 - (response[k, d + 1] * x + response[k, d + 3] * y + response[k, d + 4] * z)
-        slope[k, 2] = r2 - (response[k, d + 2] * x + response[k, d + 4] * y + response[k, d + 5] * z)
+        p0 = r0 - (response[k, d] * x + response[k, d + 1] * y + response[k, d + 2] * z)
+        p1 = r1 - (response[k, d + 1] * x + response[k, d + 3] * y + response[k, d + 4] * z)
+        p2 = r2 - (response[k, d + 2] * x + response[k, d + 4] * y + response[k, d + 5] * z)
+        slope[k, 0], slope[k, 1], slope[k, 2] = p0, p1, p2
+        impulse[k, 0] += p0
+        impulse[k, 1] += p1
+        impulse[k, 2] += p2
+        push(gradient, k, p0, p1, p2, ia, ib, moving, weight, velocity)
     return fall
 
 
@@ -185,13 +194,19 @@ def apply(t, p, share, counted):  # type: ignore[no-untyped-def]
         impulse[k, 0] += counted * x
         impulse[k, 1] += counted * y
         impulse[k, 2] += counted * z
-        px, py, on_a, on_b = impulses(gradient, k, share * x, share * y, share * z)
-        ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
-        if ia < moving:
-            velocity[ia, 0] -= px * weight[ia, INVERSE_M]
-            velocity[ia, 1] -= py * weight[ia, INVERSE_M]
-            velocity[ia, 2] += on_a * weight[ia, INVERSE_I]
-        if ib < moving:
-            velocity[ib, 0] += px * weight[ib, INVERSE_M]
-            velocity[ib, 1] += py * weight[ib, INVERSE_M]
-            velocity[ib, 2] += on_b * weight[ib, INVERSE_I]
+        x, y, z = share * x, share * y, share * z
+        push(gradient, k, x, y, z, joint_bodies[k, 0], joint_bodies[k, 1], moving, weight, velocity)
+
+
+@kernel
+def push(gradient, k, x, y, z, ia, ib, moving, weight, velocity):  # type: ignore[no-untyped-def]
+    """V += M⁻¹ Jᵀ p for an impulse p = (x, y, z) of joint k between bodies ia and ib."""
+    px, py, on_a, on_b = impulses(gradient, k, x, y, z)
+    if ia < moving:
+        velocity[ia, 0] -= px * weight[ia, INVERSE_M]
+        velocity[ia, 1] -= py * weight[ia, INVERSE_M]
+        velocity[ia, 2] += on_a * weight[ia, INVERSE_I]
+    if ib < moving:
+        velocity[ib, 0] += px * weight[ib, INVERSE_M]
+        velocity[ib, 1] += py * weight[ib, INVERSE_M]
+        velocity[ib, 2] += on_b * weight[ib, INVERSE_I]

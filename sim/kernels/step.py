@@ -2,6 +2,7 @@
 
 import math
 
+from sim.chipmunk import CONSTRAINT_SPACE, CONSTRAINT_WORDS, CONSTRAINTS_OF_SPACE, LIST_COUNT, SPACE_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blow import count_parts
@@ -19,7 +20,7 @@ from sim.kernels.parts import close_step, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.settle import book_cached, finite, settle_bounces
 from sim.kernels.sudden import sudden_energy
-from sim.memory import call_notice, clear, kernel
+from sim.memory import call_notice, clear, integers, kernel
 
 
 @kernel
@@ -54,6 +55,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     prepare(t)
     settings[at.SUDDEN] = sudden_energy(t, last_step)
     t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY] = 0, 0, 0
+    t[at.ALONE] = 1 if not touching and has_all_constraints(t) else 0
     if not touching:
         return
     clear(views.per_body(t, at.CONTACT_IMPULSE))
@@ -68,20 +70,31 @@ def begin(c, h):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def has_all_constraints(t):  # type: ignore[no-untyped-def]
+    """Whether the joints that hold are all constraints that Chipmunk goes through in this step."""
+    space = integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE]
+    listed = integers(integers(space, SPACE_WORDS)[CONSTRAINTS_OF_SPACE], 1)[LIST_COUNT] & 0xFFFFFFFF
+    return listed == t[at.HOLDING]
+
+
+@kernel
 def solve(c):  # type: ignore[no-untyped-def]
     """The impulses of a group's joints and contacts at the bodies' present velocities, breaking included."""
     head = views.control(c)
     if head[at.HEAD] != 0 and head[at.HEAD] != c:
         return  # another one acts for this structure
     fresh, touching, differs = head[at.FRESH] == 1, False, False
+    if head[at.ALONE] == 1 and not fresh:
+        return  # nothing else can have touched it since it was solved
     member = c
     while member != 0:
         t = views.control(member)
         if t[at.FAULT] >= 0:
             return
         touching = touching or t[at.CONTACTS] > 0
-        differs = take_in(t) or differs
-        if fresh and not finite(t):
+        changed, energy = take_in(t)
+        differs = changed or differs
+        if fresh and not (math.isfinite(energy) or finite(t)):
             refuse(c)
             return
         member = t[at.NEXT]
@@ -124,7 +137,8 @@ def finish(c):  # type: ignore[no-untyped-def]
     t = views.control(c)
     head = t[at.HEAD] if t[at.HEAD] != 0 else c
     if t[at.FAULT] < 0:
-        take_in(t)
+        if t[at.ALONE] == 0 or t[at.FRESH] == 1:
+            take_in(t)
         conclude(c, t)
         depart(t)
     if t[at.PARTS] > 1:

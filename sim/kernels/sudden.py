@@ -18,23 +18,11 @@ within ten steps or more, say.
 
 import math
 
-import numpy as np
-
-from sim.chipmunk import (
-    BODY_FULL_WORDS,
-    BODY_SPACE,
-    BODY_WORDS,
-    FORCE_X,
-    FORCE_Y,
-    SPACE_GRAVITY,
-    SPACE_WORDS,
-    TORQUE,
-    X,
-)
+from sim.chipmunk import BODY_WORDS, X
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import solve
-from sim.kernels.inertia import mass_of, moment_of
+from sim.kernels.bodies import force_on
 from sim.kernels.layout import (
     BLOW,
     INERTIA_I,
@@ -47,7 +35,7 @@ from sim.kernels.layout import (
     WANTED_BETA,
     WHOLE_ONLY,
 )
-from sim.memory import floats, integers, kernel
+from sim.memory import floats, kernel
 
 #: Of the structure's energy.
 WORTH = 1e-2
@@ -60,7 +48,7 @@ def sudden_energy(t, last_step):  # type: ignore[no-untyped-def]
     Masses and gradients must be those of the step, and Chipmunk not have applied its forces yet.
     """
     settings, ledger = views.settings(t), views.ledger(t)
-    energy, by_supports = note_forces(t), note_supports(t)
+    energy, by_supports = note_forces(t) if t[at.FORCED] == 1 else 0.0, note_supports(t)
     whole = settings[WANTED_BETA] != 0.0 or settings[WHOLE_ONLY] != 0.0 or t[at.SPREAD] == 1 or t[at.FREE] == 1
     if whole or settings[BLOW] > 0.0:
         return 0.0
@@ -98,16 +86,10 @@ def note_forces(t):  # type: ignore[no-untyped-def]
     """
     body_at, weight, h, most = views.body_at(t), views.weight(t), views.settings(t)[STEP], 0.0
     start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
-    force, jump = views.per_body(t, at.LAST_FORCE), views.per_body(t, at.SOLUTION)
-    now = np.empty(3)
+    force, jump, rate = views.per_body(t, at.LAST_FORCE), views.per_body(t, at.SOLUTION), 1.0 / h
     for i in range(t[at.MOVING]):
-        b, space, gx, gy = floats(body_at[i], BODY_WORDS), integers(body_at[i], BODY_FULL_WORDS)[BODY_SPACE], 0.0, 0.0
-        if space != 0:
-            gx, gy = floats(space, SPACE_WORDS)[SPACE_GRAVITY], floats(space, SPACE_WORDS)[SPACE_GRAVITY + 1]
-        mass, moment = mass_of(b), moment_of(b)
-        now[0] = b[FORCE_X] + mass * (gx + (start[i, 0] - last[i, 0]) / h)
-        now[1] = b[FORCE_Y] + mass * (gy + (start[i, 1] - last[i, 1]) / h)
-        now[2] = b[TORQUE] + moment * (start[i, 2] - last[i, 2]) / h
+        x, y, turn = start[i, 0] - last[i, 0], start[i, 1] - last[i, 1], start[i, 2] - last[i, 2]
+        now = force_on(body_at[i], rate * x, rate * y, rate * turn)
         for axis in range(3):
             lightness = weight[i, INVERSE_I if axis == 2 else INVERSE_M]
             known = lightness > 0.0 and math.isfinite(force[i, axis])

@@ -67,7 +67,7 @@ def frontier(result: Calibration) -> Figure:
     for trial in result.trials:
         point = (trial.push.seconds_per_simulated_second, trial.errors.path_max)
         groups.setdefault((trial.model.rule, trial.model.law), []).append(point)
-    markers = dict(zip(RULES, "osD", strict=True))
+    markers = dict(zip(RULES, "o^sD", strict=True))
     colours = dict(zip(LAWS, (INK, FAINT, REFERENCE, MODEL), strict=True))
     clouds = [
         Cloud(f"{rule}, {law}", markers[rule], colours[law], points) for (rule, law), points in sorted(groups.items())

@@ -82,19 +82,21 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     largest_travel : Length, optional
         From where a continuous body first touches something, steps are cut into equal parts, so that it travels no
         further than this in one [m].
-    rule : str
-        Where the joints of a member go: ``"lobatto"`` points, ``"equal"`` pieces, or ``"radau"``, hinges of a chosen
-        length at both ends.
-    joints : int
-        Points of the rule in each member that does not say otherwise.
+    rule : str, optional
+        Where the joints of a member go: ``"lobatto"`` points, ``"graded"``, which draws them to where moments peak,
+        ``"equal"`` pieces, or ``"radau"``, hinges of a chosen length at both ends. By default the second for a push,
+        in members of 6 joints and more, and else the first.
+    joints : int, optional
+        Points of the rule in each member that does not say otherwise; by default 9 for ``"graded"``, 6 for
+        ``"radau"``, and else 5.
     joint_damping : Duration
         Viscous damping of the members' joints over their stiffness [s]: a vibration at ω has the damping ratio
         ω joint_damping / 2.
     law : str, optional
         Of the members' joints: ``"rigid-plastic"``, ``"elastic-plastic"``, ``"interaction"`` of N, Q and M, or
-        ``"fibre"`` section; by default the last for members that harden, and the second for others.
-    fibres : int
-        In a section, for the fibre law.
+        ``"fibre"`` section; by default the last for pushes and for members that harden, and else the second.
+    fibres : int, optional
+        In a section, for the fibre law; by default 16 for a push, and else 8.
     hinge_length : Length, optional
         For the rule ``"radau"`` [m]; by default the depth of each section.
     refine_at : float, optional
@@ -112,11 +114,11 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     numerical_damping: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.02
     collision_slop: Length = si(1e-3)
     largest_travel: Length | None = None
-    rule: Literal["lobatto", "equal", "radau"] = "lobatto"
-    joints: JointCount = 5
+    rule: Literal["lobatto", "graded", "equal", "radau"] | None = None
+    joints: JointCount | None = None
     joint_damping: Duration = si(0.0)
     law: Literal["rigid-plastic", "elastic-plastic", "interaction", "fibre"] | None = None
-    fibres: Annotated[int, msgspec.Meta(ge=4, le=1000)] = 8
+    fibres: Annotated[int, msgspec.Meta(ge=4, le=1000)] | None = None
     hinge_length: Length | None = None
     refine_at: Annotated[float, msgspec.Meta(gt=0.0)] | None = None
     coarse_joints: JointCount = 4

@@ -63,7 +63,7 @@ def _check_programme(scene: Scene, simulation: Simulation) -> None:
     _positive(simulation.hinge_length, "simulation.hinge_length", '"0.3 m"')
     counts = {f"members.{name}.joints": member.joints for name, member in scene.members.items()}
     for place, joints in {"simulation.joints": simulation.joints, **counts}.items():
-        if simulation.rule == "radau" and joints is not None and joints < 6:
+        if simulation.rule in ("graded", "radau") and joints is not None and joints < 6:
             raise InputError(place, f"{joints} are too few for that rule", "write 6 or more")
     for key in ("gravity_ramp", "joint_damping"):
         if getattr(simulation, key) < 0.0:

@@ -17,7 +17,7 @@ from sim.modes import natural_modes  # noqa: E402
 from sim.motion import Course, follow, set_going  # noqa: E402
 from sim.pushover import PACE, Pace, Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
-from sim.rules import RULES, Rule, equal, lobatto, radau  # noqa: E402
+from sim.rules import RULES, Rule, equal, graded, lobatto, radau  # noqa: E402
 from sim.structure import SolverError, Structure  # noqa: E402
 from sim.system_ledger import SystemLedger  # noqa: E402
 
@@ -54,6 +54,7 @@ __all__ = [
     "energy",
     "equal",
     "follow",
+    "graded",
     "lobatto",
     "natural_modes",
     "push_over",

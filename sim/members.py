@@ -14,6 +14,7 @@ from sim.limits import Limits
 from sim.member_joints import Joined, JointPlace, MemberJoints, Settlement
 from sim.member_laws import MemberLaws
 from sim.model import MemberModel, Model
+from sim.moment_peaks import moment_peaks
 from sim.pieces import NodePoint, Piece, Pieces, Span
 from sim.refinement import Refinement
 from sim.rules import Rule, lobatto, member_rule
@@ -187,7 +188,7 @@ def _rule(scene: Scene, name: str, model: MemberModel) -> Rule:
     if hinge is None:
         low, high = scene.members[name].section.outline.extent()
         hinge = high - low
-    return member_rule(model.rule, model.joints, hinge, name, scene.axis(name)[2])
+    return member_rule(model.rule, model.joints, hinge, name, scene.axis(name)[2], moment_peaks(scene, name))
 
 
 def _first_rule(model: Model, finest: Rule) -> Rule:

@@ -4,12 +4,16 @@ A member cut into rigid pieces by joints at points x_i with stiffness EI / (w_i 
 the quadrature rule (x_i, w_i): static bending moments are exact, and the rule integrates the curvatures.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from capacity import InputError
+
+# k of a graded rule. Nearer to both ends a hinge that spreads as it hardens, or one in the span, is no longer seen
+# well, and the long pieces in the middle spoil natural frequencies.
+_DRAWN_TO_BOTH, _DRAWN_TO_ONE = 0.3, 0.5
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,33 @@ def lobatto(joints: int) -> Rule:
     x = np.concatenate([[-1.0], inner, [1.0]])
     weights = 1.0 / (joints * (joints - 1) * legendre.legval(x, polynomial) ** 2)
     return Rule("lobatto", 0.5 * (x + 1.0), weights, np.zeros(joints, dtype=bool))
+
+
+def graded(joints: int, *, start: bool = True, end: bool = True) -> Rule:
+    """Gauss–Lobatto points drawn to where moments peak, the ``start`` and the ``end`` of the member, or one of them.
+
+    What yields beside a peak is short: in an I section a tenth of the way to where the moment is zero. Points x go to
+    x - k sin(2πx) / 2π, or to x - k sin(πx) / π where only the start is to have more, weights along with them: a share
+    k of the sin² transformation of A. Sidi, A new variable transformation for numerical integration, Numerical
+    Integration IV, ISNM 112 (1993) 359–373. Weights are then changed by the least share that makes the rule exact to
+    degree 3, and with it the elastic answer under loads at the ends and even loads.
+
+    Raises ValueError for fewer than 6 joints.
+    """
+    if joints < 6:
+        raise ValueError(f"{joints} joints: a graded rule has at least 6")
+    even = lobatto(joints)
+    if not (start or end):
+        return replace(even, name="graded")
+    drawn, turns = (_DRAWN_TO_BOTH, 2.0) if start and end else (_DRAWN_TO_ONE, 1.0)
+    phase = turns * np.pi * (even.points if start else even.points + 1.0)
+    points = even.points - drawn * np.sin(phase) / (turns * np.pi)
+    points[[0, -1]] = 0.0, 1.0
+    weights = even.weights * (1.0 - drawn * np.cos(phase))
+    powers = legendre.legvander(2.0 * points - 1.0, 3).T
+    missing = np.array([1.0, 0.0, 0.0, 0.0]) - powers @ weights
+    weights *= 1.0 + powers.T @ np.linalg.solve(powers * weights @ powers.T, missing)
+    return Rule("graded", points, weights, np.zeros(joints, dtype=bool))
 
 
 def equal(joints: int) -> Rule:
@@ -86,11 +117,16 @@ def radau(joints: int, hinge: float) -> Rule:
 
 
 #: Names of the rules.
-RULES = ("lobatto", "equal", "radau")
+RULES = ("lobatto", "graded", "equal", "radau")
 
 
-def member_rule(name: str, joints: int, hinge_length: float, member: str, length: float) -> Rule:
-    """The rule called ``name`` for a member of some ``length`` [m]; ``hinge_length`` [m] matters to ``"radau"``.
+def member_rule(
+    name: str, joints: int, hinge_length: float, member: str, length: float, peaks: tuple[bool, bool]
+) -> Rule:
+    """The rule called ``name`` for a member of some ``length`` [m].
+
+    ``hinge_length`` [m] matters to ``"radau"``, and whether moments have ``peaks`` at the member's start and end to
+    ``"graded"``.
 
     Raises
     ------
@@ -106,4 +142,6 @@ def member_rule(name: str, joints: int, hinge_length: float, member: str, length
         return radau(joints, hinge_length / length)
     if name not in RULES:
         raise ValueError(f'there is no rule "{name}"; the rules are {", ".join(RULES)}')
+    if name == "graded":
+        return graded(joints, start=peaks[0], end=peaks[1])
     return lobatto(joints) if name == "lobatto" else equal(joints)

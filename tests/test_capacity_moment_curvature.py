@@ -66,6 +66,32 @@ def test_fibres_and_exact_integration_agree_on_first_loading(text: str, material
     np.testing.assert_allclose(fibres.moment, exact.moment, atol=2e-3 * exact.moment.max())
 
 
+@pytest.mark.parametrize(
+    ("text", "bound"),
+    [
+        ("rectangle 50x100 mm", 6e-3),
+        ("IPE 300", 3e-3),
+        ("HEB 200", 4e-3),
+        ("CHS 168.3x8 mm", 4e-3),
+        ("RHS 200x100x8 mm", 7e-3),
+        ("circle 80 mm", 8.5e-3),
+        ("UPN 200", 4e-3),
+        ("L 100x100x10", 4e-3),
+        ("T 150x150x10x15 mm", 4e-3),
+    ],
+)
+@pytest.mark.parametrize("n", [-0.5, 0.0, 0.2])
+def test_sixteen_fibres_follow_the_exact_curve(text: str, bound: float, n: float) -> None:
+    """To within a share of M_p wherever the stress is zero, bent either way."""
+    section = parse_section(text)
+    once = np.geomspace(0.5, 30.0, 40) * EPP.yield_stress / (EPP.youngs_modulus * section.depth / 2.0)
+    force, full = n * section.area * EPP.yield_stress, section.plastic_modulus * EPP.yield_stress
+    for kappa in (once, -once):
+        exact = moment_curvature(section, EPP, kappa, force).moment
+        fibres = moment_history(section, EPP, kappa, force, fibres=16).moment
+        assert np.abs(fibres - exact).max() <= bound * full
+
+
 @pytest.mark.parametrize("material", [EPP, HARD, TABLE], ids=["perfectly plastic", "hardening", "table"])
 @given(kappa=st.floats(0.001, 0.3), n=st.floats(-0.8, 0.8))
 def test_turning_the_moment_round_mirrors_the_curve(material: Any, kappa: float, n: float) -> None:

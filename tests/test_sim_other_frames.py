@@ -8,7 +8,7 @@ from fem_reference import pushover
 from scene import parse_scene
 from sim import Model
 
-NINE = Model("lobatto", 9, "fibre", 16)
+NINE = Model("graded", 9, "fibre", 16)
 STEEL = "fy=235 MPa, E=210 GPa, rho=7850 kg/m^3"
 HARDENING = f"{STEEL}, Et=1.05 GPa"
 Place = tuple[float, float, str]
@@ -67,6 +67,14 @@ def unequal() -> str:
     return frame(nodes, members, along("B", "[1, 0]", 0.2), loads)
 
 
+def beam_to_and_fro() -> str:
+    """Clamped at both ends, its longer part yields at its clamp only as it hardens; cycles that grow."""
+    nodes: dict[str, Place] = {"A": (0.0, 0.0, "clamped"), "B": (2.0, 0.0, "free"), "C": (5.0, 0.0, "clamped")}
+    stops = "[0.01, -0.01, 0.02, -0.02, 0.03, -0.03]"
+    push = f'node = "B"\ndirection = [0, -1]\nturning_points = {stops}'
+    return frame(nodes, dict.fromkeys(("A-B", "B-C"), of("IPE 240")), push, kinematics="small")
+
+
 def curve_of_stresses() -> str:
     curve = "E=200 GPa, rho=7850 kg/m^3, curve=0.00125:250 0.01:300 0.05:400 MPa"
     return cantilever(of("rectangle 60x120 mm", curve), 2.0, 0.3, "large")
@@ -78,6 +86,7 @@ CASES: dict[str, str] = {
     "curve of stresses": curve_of_stresses(),
     "braced": braced(),
     "unequal": unequal(),
+    "beam to and fro": beam_to_and_fro(),
 }
 
 

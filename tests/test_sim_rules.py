@@ -8,19 +8,75 @@ from hypothesis import strategies as st
 
 import sim
 from capacity import InputError
-from sim import Model, Rule, equal, lobatto, radau
+from scene import parse_scene
+from sim import Model, Rule, equal, graded, lobatto, radau
+from sim.moment_peaks import moment_peaks
 
 
 @pytest.mark.parametrize(
     ("rule", "degree"),
-    [(equal(9), 1), (lobatto(2), 1), (lobatto(5), 7), (lobatto(9), 15), (radau(6, 0.05), 3), (radau(8, 0.1), 3)],
+    [
+        (equal(9), 1),
+        (lobatto(2), 1),
+        (lobatto(5), 7),
+        (lobatto(9), 15),
+        (graded(6), 3),
+        (graded(9), 3),
+        (graded(9, end=False), 3),
+        (radau(6, 0.05), 3),
+        (radau(8, 0.1), 3),
+    ],
     ids=lambda value: value.name if isinstance(value, Rule) else str(value),
 )
 def test_rules_integrate_polynomials(rule: Rule, degree: int) -> None:
-    """Gauss–Lobatto to degree 2n - 3; Radau points with Gauss points between to 3; equal pieces to 1."""
+    """Gauss–Lobatto to degree 2n - 3; graded points, Radau points with Gauss points between to 3; equal pieces to 1."""
     for power in range(degree + 1):
         assert rule.weights @ rule.points**power == pytest.approx(1.0 / (power + 1), rel=1e-12)
     assert abs(rule.weights @ rule.points ** (degree + 1) - 1.0 / (degree + 2)) > 1e-12
+
+
+@given(joints=st.integers(6, 40), start=st.booleans(), end=st.booleans())
+def test_graded_points_lie_nearer_to_the_peaks(joints: int, start: bool, end: bool) -> None:
+    rule, even = graded(joints, start=start, end=end), lobatto(joints)
+    mirrored = graded(joints, start=end, end=start)
+    assert rule.points == pytest.approx(1.0 - mirrored.points[::-1], abs=1e-13)
+    assert rule.weights == pytest.approx(mirrored.weights[::-1], rel=1e-10)
+    assert np.all(np.diff(rule.points) > 0.0)
+    assert np.all(rule.weights > 0.0)
+    for peak, i in ((start, 0), (end, -1)):
+        if peak:
+            assert rule.weights[i] < 0.75 * even.weights[i]
+    if not (start or end):
+        assert np.array_equal(rule.points, even.points)
+
+
+def test_moments_peak_at_ends_that_are_held() -> None:
+    """A propped beam of two members, its right half loaded along its way; a bar; a cantilever from a knee."""
+    scene = parse_scene(
+        """
+title = "peaks"
+gravity = 0.0
+nodes.A = { at = ["0 m", "0 m"], support = "clamped" }
+nodes.B = { at = ["3 m", "0 m"] }
+nodes.C = { at = ["6 m", "0 m"], support = "roller-x" }
+nodes.D = { at = ["3 m", "2 m"] }
+nodes.E = { at = ["4 m", "2 m"] }
+members.left = { section = "IPE 200", material = "S235", from = "A", to = "B" }
+members.right = { section = "IPE 200", material = "S235", from = "B", to = "C" }
+members.post = { section = "IPE 200", material = "S235", from = "B", to = "D", releases = ["from"] }
+members.tip = { section = "IPE 200", material = "S235", from = "D", to = "E" }
+loads = [{ member = "right", per_length = ["0 N/m", "-1 N/m"] }, { member = "tip", per_length = ["0 N/m", "-1 N/m"] }]
+push = { node = "B", direction = [0, -1], distance = "1 mm" }
+""",
+        "peaks",
+    )
+    peaks = {name: moment_peaks(scene, name) for name in scene.members}
+    assert peaks == {
+        "left": (True, True),
+        "right": (False, False),
+        "post": (False, True),
+        "tip": (True, False),
+    }
 
 
 @given(joints=st.integers(6, 12), hinge=st.floats(1e-3, 0.12))
@@ -74,6 +130,8 @@ def test_hinges_too_long_for_a_member_are_refused() -> None:
         sim.assemble(scene, Model("radau", 5, "fibre", hinge_length=0.05))
     with pytest.raises(ValueError, match="between 0 and 1/8"):
         radau(6, 0.125)
+    with pytest.raises(ValueError, match="at least 6"):
+        graded(5)
     for rule in (lobatto, equal):
         with pytest.raises(ValueError, match="at least 2"):
             rule(1)

@@ -9,7 +9,9 @@ import pytest
 from test_cli import ductile
 
 from calibration.simulate_command import run
-from scene import builtin_names, builtin_text, load_scene
+from scene import builtin_names, builtin_text, load_scene, parse_scene
+from sim import MemberModel
+from sim.scene_model import model_of
 from sim.world import World
 
 
@@ -74,6 +76,16 @@ def test_hardening_is_followed_or_said_to_be_left_out(
     out, error = capsys.readouterr()
     assert json.loads(out)["push"]["load"] == pytest.approx(39.5e3 if hardened else 29.4e3, rel=0.01)
     assert ("leaves hardening out" in error) is not hardened
+
+
+def test_what_is_pushed_has_the_joints_that_follow_a_curve() -> None:
+    pushed = builtin_text("cantilever")
+    few = parse_scene(f"{pushed}\n[simulation]\njoints = 5\n", "few")
+    assert set(model_of(load_scene("cantilever")).members.values()) == {MemberModel("graded", 9, "fibre", 16)}
+    assert set(model_of(few).members.values()) == {MemberModel("lobatto", 5, "fibre", 16)}
+    assert set(model_of(load_scene("loaded-cantilever")).members.values()) == {
+        MemberModel("equal", 5, "elastic-plastic", 8)
+    }
 
 
 def test_schema_names_every_table(capsys: pytest.CaptureFixture[str]) -> None:

@@ -17,7 +17,7 @@ KINDS: tuple[Kind, ...] = ("ductile", "gear", "spring")
 #: Law that stock joints can follow.
 STOCK_LAW = "elastic-plastic"
 #: Joints that a rule has at least, where it is more than 2.
-_FEWEST = {"radau": 6}
+_FEWEST = {"radau": 6, "graded": 6}
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ SPACE_SHAPES, SPACE_WORDS = 17, 21
 # Between them: how many steps there were, and how many shapes.
 SPACE_STAMP, SPACE_SHAPE_COUNTER = 10, 16
 # cpArray: how many, as half a word; where they are.
-LIST_COUNT, _ITEMS, _LIST_WORDS = 0, 1, 2
+LIST_COUNT, LIST_ITEMS, LIST_WORDS = 0, 1, 2
 
 # cpArbiter: the contacts between two shapes.
 ARBITER_FRICTION, ARBITER_SURFACE = 1, 2
@@ -64,7 +64,7 @@ CONTACT_WORDS, CONTACT_BYTES = 12, 96
 
 # In cpConstraint: the function table first; the first words past its end belong to the kind of joint, here a pivot
 # joint's anchors, which nobody reads once its functions are replaced.
-CONSTRAINT_CLASS = 0
+CONSTRAINT_CLASS, CLASS_BYTES = 0, 32
 CONSTRAINT_SPACE = 1
 CONSTRAINT_BODY_A, CONSTRAINT_BODY_B = 2, 3
 CONSTRAINT_NEXT_A, CONSTRAINT_NEXT_B = 4, 5
@@ -112,7 +112,7 @@ def adopt(constraint: object, functions: np.ndarray, after_step: int) -> None:
     ----------
     constraint : cffi pointer
         From `pivot`.
-    functions : (4,) int64
+    functions : int64
         Addresses of preStep, applyCachedImpulse, applyImpulse and getImpulse; must outlive the constraint.
     after_step : int
         Address of a function (constraint, space) called when a step's impulses are final.
@@ -161,15 +161,15 @@ def restore_body(body: pymunk.Body, saved: np.ndarray) -> None:
 
 def listed(space: pymunk.Space, which: int) -> np.ndarray:
     """Addresses in one of a space's lists, in order, to be changed in place."""
-    head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), _LIST_WORDS, np.int64)
+    head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), LIST_WORDS, np.int64)
     count = int(head[LIST_COUNT]) & 0xFFFFFFFF
-    return words(int(head[_ITEMS]), count, np.int64) if count else np.zeros(0, dtype=np.int64)
+    return words(int(head[LIST_ITEMS]), count, np.int64) if count else np.zeros(0, dtype=np.int64)
 
 
 def list_anew(space: pymunk.Space, which: int, order: list[int]) -> None:
     """Put one of a space's lists into another order, or leave out some of it."""
     listed(space, which)[: len(order)] = order
-    head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), _LIST_WORDS, np.int32)
+    head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), LIST_WORDS, np.int32)
     head[LIST_COUNT] = len(order)
 
 
@@ -209,9 +209,9 @@ def sleeping_groups(space: pymunk.Space) -> list[list[int]]:
 
 def wake_all(space: object) -> None:
     """Wake all bodies of a cpSpace."""
-    roots = words(int(words(address(space), SPACE_WORDS, np.int64)[SLEEPING_ROOTS]), _LIST_WORDS, np.int64)
+    roots = words(int(words(address(space), SPACE_WORDS, np.int64)[SLEEPING_ROOTS]), LIST_WORDS, np.int64)
     while int(roots[LIST_COUNT]) & 0xFFFFFFFF:
-        lib.cpBodyActivate(ffi.cast("cpBody *", int(words(int(roots[_ITEMS]), 1, np.int64)[0])))
+        lib.cpBodyActivate(ffi.cast("cpBody *", int(words(int(roots[LIST_ITEMS]), 1, np.int64)[0])))
 
 
 def cached_impulse(constraint: pymunk.Constraint) -> np.ndarray:

@@ -173,8 +173,11 @@ def _lists_fit() -> bool:
 
 def _is_list(space: pymunk.Space, which: int) -> bool:
     """Whether a word of a space can be the address of a short list, so that the list may be read at all."""
-    head = int(words(address(space._space), at.SPACE_WORDS, np.int64)[which])
-    return is_address(head) and 0 <= int(words(head, 1, np.int32)[0]) < 10
+    where = int(words(address(space._space), at.SPACE_WORDS, np.int64)[which])
+    if not is_address(where):
+        return False
+    head = words(where, at.LIST_WORDS, np.int64)
+    return int(head[at.LIST_COUNT]) & 0xFFFFFFFF < 10 and is_address(int(head[at.LIST_ITEMS]))
 
 
 def is_address(word: int) -> bool:

@@ -9,6 +9,7 @@ import pymunk
 
 from sim import chipmunk
 from sim.joint import DuctileJoint
+from sim.kernels import compiled_callbacks
 from sim.kernels import layout as at
 from sim.kernels.owners import hash_table
 from sim.kernels.refusal import words_to_copy
@@ -100,6 +101,7 @@ class Tables:
         self[at.LAST_POSITION][:] = np.nan
         self.control[[at.BODIES, at.MOVING, at.JOINTS, at.LOWER]] = len(bodies), moving, n, below
         self.control[at.FAULT] = -1
+        self.control[at.OWN_CLASS] = compiled_callbacks().functions.ctypes.data
         self.control[at.DAMPED] = int(self[at.DAMPING].any())
         self.control[at.BREAKABLE] = int(np.isfinite(self[at.LIMITS][:, :3]).any())
         self.control[at.HASH_LENGTH] = len(keys)

@@ -280,6 +280,29 @@ def test_stock_constraints_work_beside_joints() -> None:
     assert bodies[2].angular_velocity == pytest.approx(1.0, rel=2e-2)
 
 
+def test_constraints_elsewhere_change_nothing() -> None:
+    """Not what a structure does alone, nor how it lets go of a joint that a stock constraint takes the place of."""
+
+    def positions(crowded: bool) -> bytes:
+        space = pymunk.Space()
+        space.gravity = (0.0, -10.0)
+        if crowded:
+            far = [piece(space, 1.0, 1.0, x, 99.0) for x in (0.0, 1.0)]
+            space.add(pymunk.PinJoint(*far))
+        bodies, joints = row(space, 3)
+        space.add(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), LAW), *joints)
+        found = b""
+        for k in range(60):
+            if k == 30:
+                space.remove(joints[0])
+                space.add(pymunk.PivotJoint(bodies[0], bodies[1], (1.0, 0.0)))
+            space.step(1 / 60)
+            found += np.array([body.position for body in bodies]).tobytes()
+        return found
+
+    assert positions(crowded=False) == positions(crowded=True)
+
+
 def test_a_structure_falls_asleep_and_wakes_up() -> None:
     space = pymunk.Space()
     space.gravity = (0.0, -9.81)

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from sim.chipmunk import CONTROL
+from sim.chipmunk import CLASS_BYTES, CONSTRAINT_CLASS, CONTROL
 from sim.compiling import Ahead, compiled
 from sim.kernels import layout as at
 from sim.kernels import views
@@ -27,7 +27,8 @@ _STEP = types.void(types.int64, types.float64)
 class Callbacks(NamedTuple):
     """Addresses for `sim.chipmunk.adopt`."""
 
-    #: Of preStep, applyCachedImpulse, applyImpulse and getImpulse.
+    #: Of preStep, applyCachedImpulse, applyImpulse and getImpulse; of joints that leave a step to another one, then of
+    #: the one that acts for all.
     functions: np.ndarray
     after_step: int
     #: What owns the code that they point to.
@@ -43,8 +44,10 @@ def compiled_callbacks() -> Callbacks:
     before, cached, after = pre_step(), apply_cached_impulse(), after_step()
     if ahead is not None:
         ahead.wait()
-    owners = before, cached, apply_impulse(), impulse, after
-    return Callbacks(np.array([owner.address for owner in owners[:4]], dtype=np.int64), after.address, owners)
+    apply = apply_impulse()
+    tables = [before, cached, cached, impulse, before, cached, apply, impulse]
+    functions = np.array([function.address for function in tables], dtype=np.int64)
+    return Callbacks(functions, after.address, (before, cached, apply, impulse, after))
 
 
 @cache
@@ -72,6 +75,7 @@ def pre_step(digest: str) -> Callable[..., None]:
         t = views.control(c)
         if t[at.LEADER] == 0:
             t[at.LEADER] = constraint
+            integers(constraint, 1)[CONSTRAINT_CLASS] = t[at.OWN_CLASS] + CLASS_BYTES
             begin(c, h)
 
     return pre_step
@@ -79,7 +83,7 @@ def pre_step(digest: str) -> Callable[..., None]:
 
 @_with_digest(_STEP)
 def apply_cached_impulse(digest: str) -> Callable[..., None]:
-    """Nothing: the first solve of a step starts from the cached impulses by itself."""
+    """Nothing: the first solve of a step starts from the cached impulses by itself, and one joint solves for all."""
 
     def apply_cached_impulse(constraint, ratio):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
@@ -125,7 +129,9 @@ def after_step(digest: str) -> Callable[..., None]:
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
         if c != 0 and views.control(c)[at.LEADER] == constraint:
-            views.control(c)[at.LEADER] = 0
+            t = views.control(c)
+            t[at.LEADER] = 0
+            integers(constraint, 1)[CONSTRAINT_CLASS] = t[at.OWN_CLASS]
             finish(c)
 
     return after_step

@@ -28,8 +28,6 @@ from sim.chipmunk import (
     BODY_FULL_WORDS,
     BODY_SPACE,
     BODY_WORDS,
-    CONSTRAINT_CLASS,
-    CONSTRAINT_WORDS,
     CONTACT_BIAS,
     CONTACT_BOUNCE,
     CONTACT_BYTES,
@@ -95,7 +93,6 @@ def collect(c, t):  # type: ignore[no-untyped-def]
     """
     moving, body_at, looking, astray = t[at.MOVING], views.body_at(t), t[at.ASTRAY] == 0, 0
     places, touches = views.places(t), views.touches(t)
-    functions = integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_CLASS]
     count, missed, h = 0, 0, views.settings(t)[at.STEP]
     slop = floats(integers(body_at[0], BODY_FULL_WORDS)[BODY_SPACE], SPACE_WORDS)[SPACE_SLOP] if moving > 0 else 0.0
     for i in range(moving):
@@ -108,7 +105,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
             contacts = w[ARBITER_COUNT] & 0xFFFFFFFF
             owner, j = c, find(t, other)
             if contacts > 0 and j < 0:
-                owner = owner_of(other, functions)
+                owner = owner_of(other, t[at.OWN_CLASS])
                 if owner != 0:
                     j = find(views.control(owner), other)
             # Held bodies count as loose: they have no mass to share.

@@ -15,7 +15,7 @@ A joint that stands for a length ℓ of a member stands for an arc, and its kink
 
 import math
 
-from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, COSINE, SINE, X
+from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, CONSTRAINT_WORDS, COSINE, SINE, X
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.layout import (
@@ -37,6 +37,7 @@ from sim.kernels.layout import (
     V_A,
     V_B,
 )
+from sim.kernels.owners import constraints_of
 from sim.memory import floats, integers, kernel
 
 _EPSILON = 2.0**-52
@@ -48,8 +49,11 @@ def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
     active, joint_at, joint_bodies = views.active(t), views.joint_at(t), views.joint_bodies(t)
     impulse, scale = views.per_joint(t, at.IMPULSE), views.scale(t)
     moving, held, holding = t[at.MOVING], False, 0
+    # Mostly they come in Chipmunk's list as they do here; that is nearer at hand than each joint's own word for it.
+    listed = constraints_of(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE])
     for k in range(t[at.JOINTS]):
-        if active[k] != 0 and integers(joint_at[k], CONSTRAINT_SPACE + 1)[CONSTRAINT_SPACE] == 0:
+        there = k < len(listed) and listed[k] == joint_at[k]
+        if active[k] != 0 and not there and integers(joint_at[k], CONSTRAINT_WORDS)[CONSTRAINT_SPACE] == 0:
             if last_step > 0.0:
                 let_go(t, k, last_step)
                 t[at.FORCED] = 1

@@ -36,7 +36,9 @@ KINDS = 31
 # In this step: whether forces from outside differ from the last one's; whether bodies were moved on at its start, see
 # `moves`; how many joints hold; whether nothing but those changes the bodies' velocities while they are solved.
 FORCED, CARRYING, HOLDING, ALONE = 32, 33, 34, 35
-_FIRST_ADDRESS = 36
+# Address of the function table of the joints, behind which lies that of the one that acts for all.
+OWN_CLASS = 36
+_FIRST_ADDRESS = 37
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

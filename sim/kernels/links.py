@@ -47,7 +47,7 @@ def reach(head, bodies):  # type: ignore[no-untyped-def]
     Also -1 where a constraint ties them to a structure, or is a spring, a motor or one of another kind.
     """
     stock = views.stock(views.control(head))
-    functions = integers(views.joint_at(views.control(head))[0], CONSTRAINT_WORDS)[CONSTRAINT_CLASS]
+    functions = views.control(head)[at.OWN_CLASS]
     count, c = 0, head
     while c != 0:
         t = views.control(c)

@@ -4,13 +4,19 @@ import numpy as np
 
 from sim.chipmunk import (
     BODY_FULL_WORDS,
+    CLASS_BYTES,
     CONSTRAINT_BODY_A,
     CONSTRAINT_CLASS,
     CONSTRAINT_NEXT_A,
     CONSTRAINT_NEXT_B,
     CONSTRAINT_WORDS,
     CONSTRAINTS,
+    CONSTRAINTS_OF_SPACE,
     CONTROL,
+    LIST_COUNT,
+    LIST_ITEMS,
+    LIST_WORDS,
+    SPACE_WORDS,
 )
 from sim.kernels import layout as at
 from sim.kernels import views
@@ -36,10 +42,17 @@ def owner_of(body, functions):  # type: ignore[no-untyped-def]
     constraint = integers(body, BODY_FULL_WORDS)[CONSTRAINTS]
     while constraint != 0:
         w = integers(constraint, CONSTRAINT_WORDS)
-        if w[CONSTRAINT_CLASS] == functions and w[CONTROL] != 0:
+        if 0 <= w[CONSTRAINT_CLASS] - functions <= CLASS_BYTES and w[CONTROL] != 0:
             return w[CONTROL]
         constraint = w[CONSTRAINT_NEXT_A] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_NEXT_B]
     return 0
+
+
+@kernel
+def constraints_of(space):  # type: ignore[no-untyped-def]
+    """Addresses of the constraints that Chipmunk goes through in a step of a space."""
+    listed = integers(integers(space, SPACE_WORDS)[CONSTRAINTS_OF_SPACE], LIST_WORDS)
+    return integers(listed[LIST_ITEMS], listed[LIST_COUNT] & 0xFFFFFFFF)
 
 
 @kernel

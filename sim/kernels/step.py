@@ -2,7 +2,7 @@
 
 import math
 
-from sim.chipmunk import CONSTRAINT_SPACE, CONSTRAINT_WORDS, CONSTRAINTS_OF_SPACE, LIST_COUNT, SPACE_WORDS
+from sim.chipmunk import CONSTRAINT_SPACE, CONSTRAINT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blow import count_parts
@@ -15,6 +15,7 @@ from sim.kernels.layout import BEFORE
 from sim.kernels.moves import carry
 from sim.kernels.newton import restart
 from sim.kernels.others import even_out, note_pushes
+from sim.kernels.owners import constraints_of
 from sim.kernels.part import conclude
 from sim.kernels.parts import close_step, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
@@ -72,9 +73,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
 @kernel
 def has_all_constraints(t):  # type: ignore[no-untyped-def]
     """Whether the joints that hold are all constraints that Chipmunk goes through in this step."""
-    space = integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE]
-    listed = integers(integers(space, SPACE_WORDS)[CONSTRAINTS_OF_SPACE], 1)[LIST_COUNT] & 0xFFFFFFFF
-    return listed == t[at.HOLDING]
+    return len(constraints_of(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE])) == t[at.HOLDING]
 
 
 @kernel

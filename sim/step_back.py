@@ -36,7 +36,27 @@ from sim.chipmunk import (
 _BOUND = 1e150
 
 
-def cause(bodies: tuple[pymunk.Body, pymunk.Body], step: float) -> str:
+def reason(place: str, bodies: tuple[pymunk.Body, pymunk.Body], moving: Collection[pymunk.Body], step: float) -> str:
+    """Why a step [s] cannot begin, and what to do, where its fault is that of a joint between two ``bodies``.
+
+    ``place`` names the joint; ``moving`` are the bodies of its structure that were dynamic when that was built.
+    """
+    for body in bodies:
+        if (body.body_type == pymunk.Body.DYNAMIC) != (body in moving):
+            return f"{place} has a body of another type than before; after changing body_type, call ask_for_structure()"
+        if body in moving and body.space is None:
+            return f"{place} has a body that is no longer in the space; take the joint out, too, or add the body again"
+    return not_finite(place, _out_of_bounds(bodies, step))
+
+
+def not_finite(place: str, why: str = "") -> str:
+    """What is said of a joint at ``place`` that has no finite impulse."""
+    because = f": {why}" if why else ""
+    cure = "look for a body that was moved or pushed without bound, or take a shorter step or a lower stiffness"
+    return f"the impulse of {place} is not finite{because}; {cure}"
+
+
+def _out_of_bounds(bodies: tuple[pymunk.Body, pymunk.Body], step: float) -> str:
     """What of a joint's bodies, or of the step [s], leads out of all bounds."""
     if not 0.0 < step < math.inf:
         return f"a step of {step:g} s cannot be taken; give one above 0"

@@ -18,7 +18,7 @@ from sim.notices import listen
 from sim.ordering import minimum_degree
 from sim.readings import Readings
 from sim.space_state import look_after
-from sim.step_back import StepBack, cause, raise_after_step
+from sim.step_back import StepBack, not_finite, raise_after_step, reason
 from sim.tables import Tables
 
 _TOLERANCE = 1e-9
@@ -125,9 +125,10 @@ class Structure(Readings):
                 self.tables.state(i)[:] = before.state(k)
             self._adopt(i)
         ledger = self.tables[at.LEDGER]
-        mass = [(b.mass, b.mass, b.moment) for b in self.bodies if b.body_type == pymunk.Body.DYNAMIC]
+        mass = np.array([(b.mass, b.mass, b.moment) for b in self.bodies if b.body_type == pymunk.Body.DYNAMIC])
         moving = last[: len(mass)]
-        ledger[at.LEDGER_KINETIC] = 0.5 * np.sum(np.array(mass) * moving**2, where=moving != 0.0)
+        # A body that never turns has a moment without bound.
+        ledger[at.LEDGER_KINETIC] = 0.5 * np.sum(np.where(moving != 0.0, mass, 0.0) * moving**2)
         ledger[at.LEDGER_ELASTIC] = 0.5 * self._result[:, [at.RESULT_BEFORE, at.RESULT_ELASTIC]].sum()
         ledger[at.LEDGER_EXTERNAL] = ledger[at.LEDGER_KINETIC] + ledger[at.LEDGER_ELASTIC]
 
@@ -255,15 +256,16 @@ class Structure(Readings):
         fault = int(self._control[at.FAULT])
         if fault >= 0:
             joint = self.joints[fault]
+            x, y = joint.at
+            place = f"joint {fault} (made at {x:g}, {y:g})"
             if self._control[at.LEADER]:
-                self._refusal = cause((joint.a, joint.b), self.step), self._step_back(_space_of(joint))
+                moving = self.bodies[: int(self._control[at.MOVING])]
+                why = reason(place, (joint.a, joint.b), moving, self.step)
+                self._refusal = why, self._step_back(_space_of(joint))
                 return
             self._control[at.FAULT] = -1
             (why, back), self._refusal = self._refusal, ("", None)
-            x, y = joint.at
-            place = f"the impulse of joint {fault} (made at {x:g}, {y:g}) is not finite" + (f": {why}" if why else "")
-            cure = "look for a body that was moved or pushed without bound, or take a shorter step or a lower stiffness"
-            error = SolverError(f"the step was refused: {place}; {cure}")
+            error = SolverError(f"the step was refused: {why or not_finite(place)}")
             raise_after_step(_space_of(joint), error, back)
             return
         if self._control[at.PARTS] > 1 and not self._control[at.COPY]:

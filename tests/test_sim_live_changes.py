@@ -6,7 +6,7 @@ import pytest
 from hard_cases import chain, law
 
 from capacity import InputError
-from sim import DuctileJoint, energy
+from sim import DuctileJoint, SolverError, energy
 
 
 def is_finite(space: pymunk.Space) -> bool:
@@ -82,6 +82,40 @@ def test_a_body_may_change_its_type() -> None:
         if kind == pymunk.Body.KINEMATIC:
             assert tip.position.y == pytest.approx(0.1 * 19 / 60, abs=0.1 / 60)
     assert is_finite(space)
+
+
+def test_a_body_of_another_type_is_refused_until_its_structure_is_asked_for() -> None:
+    case = chain(6)
+    space, tip = case.space, case.bodies[-1]
+    space.step(1 / 60)
+    tip.body_type = pymunk.Body.STATIC
+    before = [body.position for body in case.bodies]
+    with pytest.raises(SolverError, match=r"another type than before; .*ask_for_structure"):
+        space.step(1 / 60)
+    assert [body.position for body in case.bodies] == before
+    case.structure.joints[-1].ask_for_structure()
+    for _ in range(5):
+        space.step(1 / 60)
+    assert tip.position == pytest.approx(before[-1], abs=1e-12)
+    tip.body_type, tip.mass, tip.moment = pymunk.Body.DYNAMIC, 3.12, 0.001
+    with pytest.raises(SolverError, match="another type"):
+        space.step(1 / 60)
+
+
+def test_a_body_that_was_removed_without_its_joints_is_told() -> None:
+    """With them it may go, and the rest swings on."""
+    case = chain(6)
+    space, gone = case.space, case.bodies[3]
+    space.step(1 / 60)
+    space.remove(gone)
+    with pytest.raises(SolverError, match=r"joint [34] .*no longer in the space; take the joint out, too"):
+        space.step(1 / 60)
+    space.remove(*gone.constraints)
+    for _ in range(30):
+        space.step(1 / 60)
+    assert is_finite(space)
+    assert case.bodies[2].position.y > -0.1
+    assert case.bodies[4].position.y == pytest.approx(-0.5 * 9.81 * 0.5**2, rel=0.1)
 
 
 def test_a_joint_to_a_body_of_another_space_is_refused() -> None:

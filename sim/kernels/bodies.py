@@ -85,8 +85,8 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
     the impulse acts when the forces do.
 
     Movement since the last step that velocities do not explain is to take out overlap, or by hand. Returns the fastest
-    spin of those that move, whether any touches something, and a number that is finite if all are where they may be and
-    forces lead none beyond all bounds.
+    spin of those that move, whether any touches something, and a number that is finite if all are what they were and
+    where they may be, and forces lead none beyond all bounds.
     """
     body_at, shift, moving, force = views.body_at(t), views.shift(t), t[at.MOVING], views.per_body(t, at.LAST_FORCE)
     start, last = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.LAST_VELOCITY)
@@ -100,11 +100,13 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
             if x != 0.0 or y != 0.0 or w != 0.0:
                 move(body_at[i], -h * x, -h * y, -h * w)
             fastest = max(fastest, abs(b[SPIN]))
-            bounded += reached(b, h)
+            bounded += reached(b, h) if stays(body_at[i], True) else math.nan
             weigh(weight, i, b)
             touching = touching or integers(body_at[i], BODY_FULL_WORDS)[ARBITERS] != 0
             fx, fy, moment = force_on(body_at[i], rate * x, rate * y, rate * w)
             forced = forced or fx != force[i, 0] or fy != force[i, 1] or moment != force[i, 2]
+        elif not stays(body_at[i], False):
+            bounded = math.nan
         for axis in range(3):
             v = b[SPIN] if axis == 2 else b[VX + axis]
             start[i, axis], velocity[i, axis] = v, v
@@ -121,6 +123,13 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
                 shift[i, 3 + axis], shifted = rest, True
     t[at.SHIFTED], t[at.FORCED] = 1 if shifted else 0, 1 if forced else 0
     return fastest, touching, bounded
+
+
+@kernel
+def stays(body, moving):  # type: ignore[no-untyped-def]
+    """Whether a body is still what it was when its structure was built: dynamic and in a space if ``moving``."""
+    dynamic = floats(body, BODY_WORDS)[MASS_INVERSE] != 0.0
+    return dynamic == moving and (not moving or integers(body, BODY_FULL_WORDS)[BODY_SPACE] != 0)
 
 
 @kernel

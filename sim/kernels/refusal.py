@@ -17,6 +17,8 @@ from sim.chipmunk import (
     BIAS_VX,
     BODY_FULL_WORDS,
     BODY_WORDS,
+    CONSTRAINT_SPACE,
+    CONSTRAINT_WORDS,
     CONSTRAINTS,
     CONTACT_NORMAL_IMPULSE,
     CONTACT_TANGENT_IMPULSE,
@@ -28,7 +30,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.bodies import move, put, reached, store_velocities
+from sim.kernels.bodies import move, put, reached, stays, store_velocities
 from sim.kernels.layout import (
     BEFORE,
     BODY_A,
@@ -53,15 +55,34 @@ _ROUNDING = 1e-12
 
 @kernel
 def check_bodies(t):  # type: ignore[no-untyped-def]
-    """Before forces act: the fault is a joint's whose body they, or its own numbers, would lead out of all bounds."""
+    """Before forces act: the fault is a joint's whose body they, or its own numbers, would lead out of all bounds.
+
+    Or one whose body was taken out of the space without it, or is of another type now.
+    """
     h, body_at = views.settings(t)[STEP], views.body_at(t)
     if not 0.0 < h < math.inf:
         t[at.FAULT] = 0
         return
-    for i in range(t[at.MOVING]):
-        if not math.isfinite(reached(floats(body_at[i], BODY_WORDS), h)):
+    for i in range(t[at.BODIES]):
+        moving = i < t[at.MOVING]
+        if moving and not math.isfinite(reached(floats(body_at[i], BODY_WORDS), h)):
             t[at.FAULT] = first_joint_at(t, i)
             return
+        if not stays(body_at[i], moving):
+            t[at.FAULT] = joint_left_at(t, i)
+            if t[at.FAULT] >= 0:
+                return
+
+
+@kernel
+def joint_left_at(t, body):  # type: ignore[no-untyped-def]
+    """The first joint of a body that is still in the space, or -1."""
+    joint_at, joint_bodies = views.joint_at(t), views.joint_bodies(t)
+    for k in range(t[at.JOINTS]):
+        own = joint_bodies[k, 0] == body or joint_bodies[k, 1] == body
+        if own and integers(joint_at[k], CONSTRAINT_WORDS)[CONSTRAINT_SPACE] != 0:
+            return k
+    return -1
 
 
 @kernel

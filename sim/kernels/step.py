@@ -47,8 +47,9 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     spin, touching, energy = arrive(t, h)
     if t[at.FAULT] < 0 and not (math.isfinite(energy) and h > 0.0):
         check_bodies(t)
-        # Python notes how all else in the space is.
-        call_notice(t[at.NOTICE], t[at.KEY])
+        if t[at.FAULT] >= 0:
+            # Python notes how all else in the space is.
+            call_notice(t[at.NOTICE], t[at.KEY])
     choose_scheme(t, spin)
     take_up(t, ratio, last_step)
     carry(t, h, last_step, moved, touching)

@@ -87,16 +87,16 @@ class Simulation(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         ``"equal"`` pieces, or ``"radau"``, hinges of a chosen length at both ends. By default the second for a push,
         in members of 6 joints and more, and else the first.
     joints : int, optional
-        Points of the rule in each member that does not say otherwise; by default 9 for ``"graded"``, 6 for
-        ``"radau"``, and else 5.
+        Points of the rule in each member that does not say otherwise; by default 9 for ``"graded"``, and for
+        ``"lobatto"`` in a push or a motion, 6 for ``"radau"``, and else 5.
     joint_damping : Duration
         Viscous damping of the members' joints over their stiffness [s]: a vibration at ω has the damping ratio
         ω joint_damping / 2.
     law : str, optional
         Of the members' joints: ``"rigid-plastic"``, ``"elastic-plastic"``, ``"interaction"`` of N, Q and M, or
-        ``"fibre"`` section; by default the last for pushes and for members that harden, and else the second.
+        ``"fibre"`` section; by default the last for a push, a motion and members that harden, and else the second.
     fibres : int, optional
-        In a section, for the fibre law; by default 16 for a push, and else 8.
+        In a section, for the fibre law; by default 16 for a push or a motion, and else 8.
     hinge_length : Length, optional
         For the rule ``"radau"`` [m]; by default the depth of each section.
     refine_at : float, optional

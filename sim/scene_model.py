@@ -9,12 +9,12 @@ from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER
 from sim.limits import Limits
 from sim.model import MemberModel, Model
 
-#: Law of a member's joints when nothing is said: of what is pushed or hardens, and of all others.
+#: Law of a member's joints when nothing is said: of what has a curve or hardens, and of all others.
 _SPREADING, _PLAIN = "fibre", "elastic-plastic"
-#: Joints of a member by rule, and fibres in a push and elsewhere, when nothing is said. A push is looked at point by
-#: point of its curve: these follow most within 1 % of the largest load.
-_JOINTS = {"lobatto": 5, "graded": 9, "equal": 5, "radau": 6}
-_FIBRES_OF_PUSH, _FIBRES = 16, 8
+#: Joints of a member by rule, and fibres, when nothing is said.
+_JOINTS, _FIBRES = {"lobatto": 5, "graded": 9, "equal": 5, "radau": 6}, 8
+#: The same where a push or a motion is followed along its curve: most within 1 % of the largest load, or 5 % of a peak.
+_JOINTS_OF_CURVE, _FIBRES_OF_CURVE = _JOINTS | {"lobatto": 9}, 16
 #: Fewest joints of a graded rule.
 _FEWEST_GRADED = 6
 
@@ -22,9 +22,9 @@ _FEWEST_GRADED = 6
 def model_of(scene: Scene) -> Model:
     """Where the joints of ``scene``'s members go, by what law they give way, and how they are stepped."""
     run = scene.simulation or Simulation()
-    every = _member_model(run, run.joints, pushed=scene.pushed is not None, hardens=False)
+    every = _member_model(scene, run.joints, hardens=False)
     members = {
-        name: _member_model(run, member.joints or run.joints, pushed=scene.pushed is not None, hardens=hardens(member))
+        name: _member_model(scene, member.joints or run.joints, hardens=hardens(member))
         for name, member in scene.members.items()
     }
     return Model(
@@ -41,13 +41,15 @@ def model_of(scene: Scene) -> Model:
     )
 
 
-def _member_model(run: Simulation, joints: int | None, *, pushed: bool, hardens: bool) -> MemberModel:
-    """The model of a member, with what the scene does not say filled in."""
+def _member_model(scene: Scene, joints: int | None, *, hardens: bool) -> MemberModel:
+    """The model of a member of so many joints, with what the scene does not say filled in."""
+    run, pushed = scene.simulation or Simulation(), scene.pushed is not None
+    curve = pushed or scene.motion is not None
     graded = pushed and (joints is None or joints >= _FEWEST_GRADED)
     rule = run.rule or ("graded" if graded else "lobatto")
-    law = run.law or (_SPREADING if pushed or hardens else _PLAIN)
-    fibres = run.fibres or (_FIBRES_OF_PUSH if pushed else _FIBRES)
-    return MemberModel(rule, joints or _JOINTS[rule], law, fibres, run.hinge_length)
+    law = run.law or (_SPREADING if curve or hardens else _PLAIN)
+    fibres = run.fibres or (_FIBRES_OF_CURVE if curve else _FIBRES)
+    return MemberModel(rule, joints or (_JOINTS_OF_CURVE if curve else _JOINTS)[rule], law, fibres, run.hinge_length)
 
 
 def hardens(member: Member) -> bool:

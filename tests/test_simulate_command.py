@@ -80,8 +80,10 @@ def test_hardening_is_followed_or_said_to_be_left_out(
 
 def test_what_is_pushed_has_the_joints_that_follow_a_curve() -> None:
     pushed = builtin_text("cantilever")
+    moved = parse_scene(pushed[: pushed.index("[push]")] + '[motion]\nduration = "0.1 s"\nvelocity = [0, -1]', "moved")
     few = parse_scene(f"{pushed}\n[simulation]\njoints = 5\n", "few")
     assert set(model_of(load_scene("cantilever")).members.values()) == {MemberModel("graded", 9, "fibre", 16)}
+    assert set(model_of(moved).members.values()) == {MemberModel("lobatto", 9, "fibre", 16)}
     assert set(model_of(few).members.values()) == {MemberModel("lobatto", 5, "fibre", 16)}
     assert set(model_of(load_scene("loaded-cantilever")).members.values()) == {
         MemberModel("equal", 5, "elastic-plastic", 8)

@@ -14,6 +14,7 @@ from sim.far_side import turn_round
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
 from sim.laws import Law
+from sim.near import Surroundings
 from sim.notices import listen
 from sim.ordering import minimum_degree
 from sim.readings import Readings
@@ -95,6 +96,7 @@ class Structure(Readings):
         self.tables = Tables(joints, self.bodies, pattern, tolerance)
         self._control = self.tables.control
         self._control[[at.NOTICE, at.KEY]] = listen(self)
+        self._surroundings = Surroundings()
         self._settings, self._result = self.tables[at.SETTINGS], self.tables[at.RESULT]
 
     def _take_over(self, after: Structure | None) -> None:
@@ -253,6 +255,9 @@ class Structure(Readings):
 
     def told(self) -> None:
         """Something happened in a step that the space has not left yet; called by the kernels."""
+        if self._control[at.ASKED]:
+            self._surroundings.answer(self)
+            return
         fault = int(self._control[at.FAULT])
         if fault >= 0:
             joint = self.joints[fault]

@@ -118,12 +118,13 @@ class Tables:
             self.control[word] = array.ctypes.data
 
     def make_room(self, contacts: int) -> None:
-        """Memory for so many points of contact."""
-        places = np.zeros((contacts, at.PLACE_WORDS), dtype=np.int64)
-        pushes = np.zeros((contacts, 4))
-        if self.control[at.PUSHED]:
-            pushes[: len(self[at.PUSHES])] = self[at.PUSHES]
-        self._hold({at.PLACES: places, at.TOUCHES: np.zeros((contacts, at.TOUCH_WORDS)), at.PUSHES: pushes})
+        """Memory for so many points of contact; what is noted of those there are stays."""
+        kinds = (at.PLACES, at.PLACE_WORDS, np.int64), (at.TOUCHES, at.TOUCH_WORDS, float), (at.PUSHES, 4, float)
+        arrays = {word: np.zeros((contacts, width), dtype=kind) for word, width, kind in kinds}
+        for word, array in arrays.items():
+            if word in self._arrays:
+                array[: len(self[word])] = self[word][:contacts]
+        self._hold(arrays)
         self.control[at.ROOM] = contacts
 
     def make_pattern(self) -> None:

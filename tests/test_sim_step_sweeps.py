@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pymunk
 import pytest
-from step_sweeps import CASES, LESS_ALIKE, crate
+from step_sweeps import CASES, crate
 from sudden_cases import BEAM, SIX
 
 from sim import AVERAGE_ACCELERATION, Model, Structure, assemble
@@ -18,13 +18,6 @@ DYNAMIC = 0.05
 def test_a_blow_has_the_same_effect_at_any_step(name: str) -> None:
     found = np.array([CASES[name](rate, 2) for rate in (60, 240, 1000)])
     assert (found.max(axis=0) / found.min(axis=0)).max() <= 1.0 + DYNAMIC
-
-
-@pytest.mark.parametrize("name", LESS_ALIKE)
-def test_contacts_that_come_and_go_within_a_step_are_felt_at_any(name: str) -> None:
-    """Within what docs/steps-and-iterations.md says; of falls, whole steps lose or invent most."""
-    found = np.array([LESS_ALIKE[name](rate, 2) for rate in (60, 240, 1000)])
-    assert (found.max(axis=0) / found.min(axis=0)).max() <= 1.3
 
 
 @pytest.mark.parametrize("name", CASES)

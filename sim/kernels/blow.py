@@ -59,8 +59,8 @@ from sim.memory import floats, kernel
 LONGEST_PART = 0.5e-3
 # Over what outer forces give in a step.
 _SUDDEN = 2.0
-# Of the structure's energy.
-_WORTH = 1e-3
+#: Of the structure's energy.
+WORTH_OF_BLOW = 1e-3
 # How long a structure takes to turn and swing back, over how long it takes to turn.
 _BACK = 2.0
 #: Of the blow's energy, lost in a second [1/s].
@@ -92,9 +92,9 @@ def count_parts(head):  # type: ignore[no-untyped-def]
             if speed > 0.0:
                 new = max(new, 0.5 * striking_mass(places[k]) * speed * speed)
         c = t[at.NEXT]
-    if new <= _WORTH * (kinetic + elastic):
+    if new <= WORTH_OF_BLOW * (kinetic + elastic):
         new = 0.0
-    worth = 0.5 * (_WORTH if new >= sudden else WORTH)
+    worth = 0.5 * (WORTH_OF_BLOW if new >= sudden else WORTH)
     new = max(new, sudden)
     if new > 0.0 or lasting == 0.0:
         lasting = max(lasting, new)

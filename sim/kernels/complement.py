@@ -30,7 +30,9 @@ from sim.kernels.blocks import factorise_matrix, solve
 from sim.kernels.layout import (
     BODY_A,
     BODY_B,
+    FAR,
     FRICTION,
+    GAP,
     INDEX_A,
     INDEX_B,
     INVERSE_I,
@@ -53,11 +55,13 @@ NOT_FINITE = -1.0
 
 @kernel
 def gather_contacts(head):  # type: ignore[no-untyped-def]
-    """Contacts of all structures of a group."""
+    """Contacts of all structures of a group, but those whose surfaces are too far apart to meet."""
     count, c = 0, head
     while c != 0:
         t = views.control(c)
-        count += t[at.CONTACTS]
+        own_touches = views.touches(t)
+        for k in range(t[at.CONTACTS]):
+            count += own_touches[k, GAP] < FAR
         c = t[at.NEXT]
     places, touches = np.empty((count, at.PLACE_WORDS), np.int64), np.empty((count, at.TOUCH_WORDS))
     count, c = 0, head
@@ -65,6 +69,8 @@ def gather_contacts(head):  # type: ignore[no-untyped-def]
         t = views.control(c)
         own, own_touches = views.places(t), views.touches(t)
         for k in range(t[at.CONTACTS]):
+            if own_touches[k, GAP] >= FAR:
+                continue
             for i in range(at.PLACE_WORDS):
                 places[count, i] = own[k, i]
             for i in range(at.TOUCH_WORDS):

@@ -74,7 +74,7 @@ from sim.kernels.layout import (
     WANTED,
     WHERE,
 )
-from sim.kernels.owners import find, owner_of, unite
+from sim.kernels.owners import home, unite
 from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, integers, kernel
 
@@ -94,7 +94,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
     moving, body_at, looking, astray = t[at.MOVING], views.body_at(t), t[at.ASTRAY] == 0, 0
     places, touches = views.places(t), views.touches(t)
     count, missed, h = 0, 0, views.settings(t)[at.STEP]
-    slop = floats(integers(body_at[0], BODY_FULL_WORDS)[BODY_SPACE], SPACE_WORDS)[SPACE_SLOP] if moving > 0 else 0.0
+    slop = space_slop(t) if moving > 0 else 0.0
     for i in range(moving):
         own = body_at[i]
         arbiter = integers(own, BODY_FULL_WORDS)[ARBITERS]
@@ -103,14 +103,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
             is_a = w[ARBITER_BODY_A] == own
             other = w[ARBITER_BODY_B] if is_a else w[ARBITER_BODY_A]
             contacts = w[ARBITER_COUNT] & 0xFFFFFFFF
-            owner, j = c, find(t, other)
-            if contacts > 0 and j < 0:
-                owner = owner_of(other, t[at.OWN_CLASS])
-                if owner != 0:
-                    j = find(views.control(owner), other)
-            # Held bodies count as loose: they have no mass to share.
-            if owner != 0 and (j < 0 or j >= views.control(owner)[at.MOVING]):
-                owner, j = 0, -1
+            owner, j = home(c, other) if contacts > 0 else (0, -1)
             for k in range(contacts):
                 where = w[ARBITER_CONTACTS] + CONTACT_BYTES * k
                 contact = floats(where, CONTACT_WORDS)
@@ -158,6 +151,12 @@ def collect(c, t):  # type: ignore[no-untyped-def]
     t[at.CONTACTS], t[at.MISSED] = count, missed
     if looking:
         t[at.ASTRAY] = astray
+
+
+@kernel
+def space_slop(t):  # type: ignore[no-untyped-def]
+    """By how much shapes may overlap in a structure's space [m]."""
+    return floats(integers(views.body_at(t)[0], BODY_FULL_WORDS)[BODY_SPACE], SPACE_WORDS)[SPACE_SLOP]
 
 
 @kernel

@@ -9,9 +9,10 @@ from sim.chipmunk import BODY_WORDS, MASS_INVERSE, SPIN, VX
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import load_positions, move
+from sim.kernels.contacts import space_slop
 from sim.kernels.inertia import moment_of
 from sim.kernels.layout import GAP, INVERSE_M, LOOSE_START, OTHER_START, STEP, STEP_RATIO, STRIKE, WHOLE_STEP
-from sim.kernels.others import touched, which
+from sim.kernels.others import met, pushed, touched, which
 from sim.kernels.rows import own_velocity
 from sim.memory import floats, kernel
 
@@ -24,7 +25,9 @@ def lateness(head):  # type: ignore[no-untyped-def]
         t = views.control(c)
         touches, settings = views.touches(t), views.settings(t)
         for k in range(t[at.CONTACTS]):
-            if touches[k, STRIKE] > 0.0:
+            # What came near within the parts of the last step was stopped there; what overlaps a little is not late.
+            here = t[at.AFTER_PARTS] == 1 and touches[k, GAP] >= -space_slop(t)
+            if touches[k, STRIKE] > 0.0 and not here:
                 late = max(late, -touches[k, GAP] / touches[k, STRIKE])
         late = min(late, settings[STEP] / settings[STEP_RATIO])
         c = t[at.NEXT]
@@ -41,7 +44,7 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
         b = floats(others[i], BODY_WORDS)
         move(others[i], -late * b[VX], -late * b[VX + 1], -late * b[SPIN])
     hit, c = False, head
-    share = 0.5 - late / views.settings(views.control(head))[WHOLE_STEP]
+    gone = late / views.settings(views.control(head))[WHOLE_STEP]
     while c != 0:
         t = views.control(c)
         places, touches, struck = views.places(t), views.touches(t), False
@@ -53,7 +56,7 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
             if touches[k, STRIKE] > 0.0:
                 struck = hit = True
                 if i >= 0:
-                    b = floats(others[i], BODY_WORDS)
+                    b, share = floats(others[i], BODY_WORDS), behind(t, others[i]) - gone
                     b[VX] = touches[k, LOOSE_START] + share * pushes[i, 0]
                     b[VX + 1] = touches[k, LOOSE_START + 1] + share * pushes[i, 1]
                     b[SPIN] = touches[k, LOOSE_START + 2] + share * pushes[i, 2]
@@ -65,13 +68,33 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
                 shift[i, axis] -= late * start[i, axis]
         t[at.SHIFTED] = 1
         if struck and t[at.FREE] == 1:
+            share = (0.0 if t[at.AFTER_PARTS] == 1 else 0.5) - gone
             for i in range(t[at.MOVING]):
                 start[i, 0] += share * external[i, 0] * weight[i, INVERSE_M]
                 start[i, 1] += share * external[i, 1] * weight[i, INVERSE_M]
                 start[i, 2] += share * external[i, 2] / moment_of(floats(body_at[i], BODY_WORDS))
         c = t[at.NEXT]
-    for i in range(len(others) if hit else 0):
-        b = floats(others[i], BODY_WORDS)
-        if b[MASS_INVERSE] > 0.0 and not touched(head, others[i]):
+    for i in range(len(others)):
+        b, share = floats(others[i], BODY_WORDS), 0.5 - gone
+        near = touched(head, others[i])
+        if near:
+            share = behind_in(head, others[i]) - gone
+        if b[MASS_INVERSE] > 0.0 and (near or hit) and not met(head, others[i]):
             b[VX] += share * pushes[i, 0]
             b[VX + 1] += share * pushes[i, 1]
+
+
+@kernel
+def behind(t, body):  # type: ignore[no-untyped-def]
+    """By how much of a step the velocity of a loose body is behind its place, but where the last parts moved it: ½."""
+    return 0.0 if t[at.AFTER_PARTS] == 1 and pushed(t, body) >= 0 else 0.5
+
+
+@kernel
+def behind_in(head, body):  # type: ignore[no-untyped-def]
+    """The same for all structures of a group."""
+    least, c = 0.5, head
+    while c != 0:
+        least = min(least, behind(views.control(c), body))
+        c = views.control(c)[at.NEXT]
+    return least

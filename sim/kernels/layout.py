@@ -3,6 +3,8 @@
 The control table is int64: sizes, counters, flags, then the addresses of the arrays; `views` gives the arrays.
 """
 
+import math
+
 # Sizes.
 BODIES, MOVING, JOINTS, LOWER = 0, 1, 2, 3
 # What happened: first joint whose law gave a number that is not finite (-1 if none, or `WITH_OTHERS` where another
@@ -38,7 +40,10 @@ KINDS = 31
 FORCED, CARRYING, HOLDING, ALONE = 32, 33, 34, 35
 # Address of the function table of the joints, behind which lies that of the one that acts for all.
 OWN_CLASS = 36
-_FIRST_ADDRESS = 37
+# Contacts that may come within the step, after those that Chipmunk found, see `near`; what Python is asked for them.
+NEAR, ASKED = 37, 38
+GATHER, LOOK, DROP = 1, 2, 3
+_FIRST_ADDRESS = 39
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -81,7 +86,7 @@ _FIRST_ADDRESS = 37
     BODY_KEYS,  # hash table from a body's address …
     BODY_VALUES,  # … to its index
     PLACES,  # (room, 8) int64: contacts, see `contacts`
-    TOUCHES,  # (room, 25)
+    TOUCHES,  # (room, 30)
     PATTERN,  # (bodies, 3): forces of the load pattern for a load factor of 1
     IMAGE,  # (bodies, 3): H⁻¹ of it
     BEGUN_AT,  # (bodies, 3): positions at the start of a step that is taken in parts
@@ -108,7 +113,9 @@ SUDDEN, WHOLE_ONLY = 20, 21
 MOVE = 22
 # Share of a structure's energy below which its blow is none any more.
 BLOW_SHARE = 23
-_NUMBERS = 24
+# How far surfaces may move until their contacts are to be found anew, and have moved [m].
+MARGIN, TRAVEL = 24, 25
+_NUMBERS = 26
 # All of them again, as they were before the step.
 BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 
@@ -153,14 +160,19 @@ RESULT_PLASTIC, RESULT_DISSIPATED, RESULT_VISCOUS, RESULT_USED = 8, 12, 13, 14
 RESULT_WORDS = 16
 
 # A contact in `places`: address of the cpContact, its hash; for each side the control table of the structure that the
-# body belongs to (0: none), its index there, and its address.
+# body belongs to (0: none), its index there, and its address. A contact that came within the step keeps in place of a
+# hash the address of the one of Chipmunk's that it stands for, or 0.
 WHERE, HASH, OWNER_A, INDEX_A, BODY_A, OWNER_B, INDEX_B, BODY_B = range(8)
 PLACE_WORDS = 8
 # A contact in `touches`: normal, arms, friction, surface velocity along the tangent, wanted normal velocity, bias,
 # cached impulses, velocities of the other side's point at the step's start (normal, tangent); velocity x, y and spin of
 # the loose body at the step's start, distance of the surfaces, impulses of the step's earlier parts, wanted velocity by
 # restitution alone, speed with which bodies struck each other in this contact, position x, y and angle of the
-# loose body at the step's start, cached impulses before the step.
+# loose body at the step's start, cached impulses before the step; how far the two shapes reach from their bodies'
+# centres, and their restitution, for contacts that come within the step.
 NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
 CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE, LOOSE_AT, KEPT = 10, 12, 14, 17, 18, 20, 21, 22, 25
-TOUCH_WORDS = 27
+REACH, RETURN = 27, 29
+TOUCH_WORDS = 30
+# Distance of surfaces that cannot meet before contacts are found anew; it stays that, however they move [m].
+FAR = math.inf

@@ -147,17 +147,37 @@ def struck_besides(others, pushes):  # type: ignore[no-untyped-def]
 
 @kernel
 def touched(head, body):  # type: ignore[no-untyped-def]
-    """Whether a group touches a body that is not its own."""
+    """Whether a group touches a body that is not its own, or is near it."""
     c = head
     while c != 0:
         t = views.control(c)
-        places = views.places(t)
-        for k in range(t[at.CONTACTS]):
-            if (places[k, OWNER_A] == 0 and places[k, BODY_A] == body) or (
-                places[k, OWNER_B] == 0 and places[k, BODY_B] == body
-            ):
-                return True
+        if is_at(t, body, t[at.CONTACTS]):
+            return True
         c = t[at.NEXT]
+    return False
+
+
+@kernel
+def met(head, body):  # type: ignore[no-untyped-def]
+    """Whether Chipmunk has found that a group touches a body that is not its own."""
+    c = head
+    while c != 0:
+        t = views.control(c)
+        if is_at(t, body, t[at.CONTACTS] - t[at.NEAR]):
+            return True
+        c = t[at.NEXT]
+    return False
+
+
+@kernel
+def is_at(t, body, count):  # type: ignore[no-untyped-def]
+    """Whether a loose body is at one of the first ``count`` contacts of a structure."""
+    places = views.places(t)
+    for k in range(count):
+        if (places[k, OWNER_A] == 0 and places[k, BODY_A] == body) or (
+            places[k, OWNER_B] == 0 and places[k, BODY_B] == body
+        ):
+            return True
     return False
 
 

@@ -56,6 +56,22 @@ def constraints_of(space):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def home(c, body):  # type: ignore[no-untyped-def]
+    """Control table of the structure that a body is solved with, ``c`` itself first, and its index there; or 0, -1.
+
+    Held bodies count as loose: they have no mass to share.
+    """
+    owner, j = c, find(views.control(c), body)
+    if j < 0:
+        owner = owner_of(body, views.control(c)[at.OWN_CLASS])
+        if owner != 0:
+            j = find(views.control(owner), body)
+    if owner != 0 and (j < 0 or j >= views.control(owner)[at.MOVING]):
+        owner, j = 0, -1
+    return owner, j
+
+
+@kernel
 def unite(one, other):  # type: ignore[no-untyped-def]
     """Put the groups of two structures (addresses of control tables) together."""
     first, second = views.control(one), views.control(other)

@@ -6,11 +6,13 @@ and contacts are solved, laws and ledger take over what was found, and the struc
 the loose ones that touch them. The last part is what Chipmunk's iterations then work on. In the end the bodies are put
 back, and a pseudo-velocity makes Chipmunk's next move, which is one of a whole step, end where the last part does.
 
-Which surfaces meet, and in which direction, stays as Chipmunk found it; their distance g is followed, and a contact may
-close it in a part of length h but not pass it, v_n ≥ - g / h.
+Which surfaces meet, and in which direction, is found anew within the step (`near.py`). In between, their distance g is
+followed, and a contact may close it in a part of length h but not pass it, v_n ≥ - g / h.
 
 A blow is noticed late, and all go back to when they touched (`late.py`); the parts are those of what is left then, too.
 """
+
+import math
 
 import numpy as np
 
@@ -27,7 +29,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.blow import OVER, flows, forget, grow_older, is_over, numerical_loss
+from sim.kernels.blow import LONGEST_PART, OVER, flows, forget, grow_older, is_over, numerical_loss
 from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
 from sim.kernels.late import go_back, lateness
 from sim.kernels.layout import (
@@ -44,6 +46,7 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_links
+from sim.kernels.near import fall_behind, hand_over, let_go, look, stand_in
 from sim.kernels.newton import restart
 from sim.kernels.others import (
     others_of,
@@ -63,13 +66,18 @@ from sim.memory import clear, floats, kernel
 def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     """Take all parts of a step but the last one, and begin that; whether all of them converged."""
     others = others_of(head)
+    free = np.empty((len(others), 3))
+    load_velocities(others, free)
     pushes = release(head, others)
     struck = struck_besides(others, pushes)
+    fall_behind(head, others, pushes, free)
     begun = np.empty((len(others), 3))
     load_positions(others, begun)
     late = lateness(head)
+    parts = max(parts, math.ceil((views.settings(views.control(head))[STEP] + late) / LONGEST_PART - 1e-6))
     go_back(head, others, pushes, late)
     scale_all(pushes, open_step(head, late, parts))
+    stand_in(head)
     # What another body gave comes once, whatever the length of the parts, so that no momentum is lost.
     add_all(pushes, struck, 1.0 / parts)
     links = links_of(others, views.stock(views.control(head)))
@@ -77,6 +85,7 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     h = views.settings(views.control(head))[STEP]
     flowed, dissipated = False, numerical_loss(head)
     for _ in range(parts - 1):
+        look(head)
         load_velocities(others, before)
         begin_part(head, others, pushes)
         prepare_links(links, h)
@@ -93,6 +102,7 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
         while c != 0:
             t = views.control(c)
             if t[at.FAULT] >= 0 or not finite(t):
+                let_go(head, others, pushes, begun, free)
                 return_linked(head, others, begun, views.settings(t)[WHOLE_STEP])
                 return converged
             c = t[at.NEXT]
@@ -105,6 +115,8 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     worth = OVER * settings[WHOLE_STEP] * settings[BLOW]
     if parts * lost < worth or is_over(head, flowed):
         forget(head)
+    look(head)
+    let_go(head, others, pushes, begun, free)
     begin_part(head, others, pushes)
     prepare_links(links, h)
     return_linked(head, others, begun, settings[WHOLE_STEP])
@@ -203,3 +215,4 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
         contact = floats(places[k, WHERE], CONTACT_WORDS)
         contact[CONTACT_NORMAL_IMPULSE] += touches[k, EARLIER]
         contact[CONTACT_TANGENT_IMPULSE] += touches[k, EARLIER + 1]
+    hand_over(t)

@@ -13,6 +13,7 @@ from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import prepare, take_up
 from sim.kernels.layout import BEFORE
 from sim.kernels.moves import carry
+from sim.kernels.near import drop, gather, let_come
 from sim.kernels.newton import restart
 from sim.kernels.others import even_out, note_pushes
 from sim.kernels.owners import constraints_of
@@ -57,9 +58,15 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     prepare(t)
     settings[at.SUDDEN] = sudden_energy(t, last_step)
     t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY] = 0, 0, 0
-    t[at.ALONE] = 1 if not touching and has_all_constraints(t) else 0
-    if not touching:
-        return
+    if touching:
+        take_over(c, t)
+    gather(c, t)
+    t[at.ALONE] = 1 if not touching and t[at.NEAR] == 0 and has_all_constraints(t) else 0
+
+
+@kernel
+def take_over(c, t):  # type: ignore[no-untyped-def]
+    """Take over the contacts of this step."""
     clear(views.per_body(t, at.CONTACT_IMPULSE))
     collect(c, t)
     if t[at.MISSED] > 0 or t[at.ASTRAY] > 0:
@@ -106,6 +113,7 @@ def solve(c):  # type: ignore[no-untyped-def]
             book_cached(c)
         parts = count_parts(c)
         if parts > 1:
+            touching = let_come(c) or touching
             keep(c, parts)
             converged = take_parts(c, parts, fresh, touching)
         member = c
@@ -146,6 +154,7 @@ def finish(c):  # type: ignore[no-untyped-def]
     if t[at.FAULT] >= 0:
         roll_back(t)
     note_pushes(t)
+    drop(t)
     t[at.HEAD], t[at.NEXT] = 0, 0
     if t[at.FAULT] == at.WITH_OTHERS:
         t[at.FAULT] = -1

@@ -144,6 +144,11 @@ def next_move(body: pymunk.Body) -> tuple[pymunk.Vec2d, float]:
     return body.velocity + pushed, body.angular_velocity + float(raw[BIAS_SPIN])
 
 
+def push_apart(body: pymunk.Body, velocity: np.ndarray | float) -> None:
+    """Set a body's pseudo-velocity x, y [m/s] and spin [rad/s]."""
+    words(body_address(body), BODY_FULL_WORDS)[BIAS_VX : BIAS_SPIN + 1] = velocity
+
+
 def overlap(one: pymunk.Shape, other: pymunk.Shape) -> bool:
     """Whether two shapes overlap where their bodies are; pymunk's own test takes it for granted."""
     return bool(lib.cpShapesCollide(one._shape, other._shape).count)

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 
+from sim.body_places import put_even
 from sim.carried_motion import carried
 from sim.elastic_line import Chain, End, interpolated
 from sim.inheritance import Heir, external_force
@@ -103,10 +104,11 @@ def recut(
         np.array([np.zeros(3) if own is None else residual(own.law, own.state) for own in new]),
         np.array([np.zeros(3) if own is None else own.kink for own in new]),
     )
+    wait = put_even(structure.bodies, structure.tables)
     moving = _Moving([piece.body for piece in pieces.of[name]])
-    undamped = structure.scheme[0] != 0.0
+    undamped = bool(structure.tables[at.SETTINGS][at.BETA] != 0.0)
     reach = structure.step * (0.5 if undamped else 1.0)
-    now, then = (_Line.of(coarse, fine, shares, moving, old, ahead) for ahead in (0.0, reach))
+    now, then = (_Line.of(coarse, fine, shares, moving, old, wait + ahead) for ahead in (0.0, reach))
     if now.poses is None or then.poses is None:
         return None
     work = _work(coarse, fine, then, _force_on(structure, moving.bodies))
@@ -126,7 +128,7 @@ def recut(
         reach,
     )
     pieces.space.remove(*gone)
-    made = pieces.pieces_at(name, after, then.poses - reach * velocity)
+    made = pieces.pieces_at(name, after, then.poses - (wait + reach) * velocity)
     for piece, (x, y, spin) in zip(made, velocity.tolist(), strict=True):
         piece.body.velocity, piece.body.angular_velocity = (x, y), spin
     pieces.replace(name, made)

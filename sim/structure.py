@@ -10,6 +10,7 @@ import pymunk
 
 from capacity import InputError
 from sim import chipmunk
+from sim.body_places import carry_along, put_forth
 from sim.far_side import turn_round
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
@@ -102,21 +103,28 @@ class Structure(Readings):
     def _take_over(self, after: Structure | None) -> None:
         """Make the joints this structure's, with the plastic state they had in another.
 
-        Bodies that were in another structure, or are joined to one or to a kinematic body, keep moving as they do; a
-        structure that is new and tied to the world at most begins to move with its first step.
+        Bodies that were in another structure keep moving as they do; what is joined to one, or to a kinematic body, has
+        moved along with that since the last step, whatever its velocity. A structure that is new and tied to the world
+        at most begins to move with its first step.
         """
         olds = dict.fromkeys([after, *(joint.structure for joint in self.joints)])
         moved: dict[pymunk.Body, np.ndarray] = {}
         pushed: dict[pymunk.Body, np.ndarray] = {}
         for old in filter(None, olds):
-            moved |= dict(zip(old.bodies, old._let_go(), strict=True))
-            pushed |= dict(zip(old.bodies, old.tables[at.LAST_FORCE], strict=True))
+            stepped, velocities = old._has_stepped, old._let_go()
+            if stepped:
+                moved |= dict(zip(old.bodies, velocities, strict=True))
+                pushed |= dict(zip(old.bodies, old.tables[at.LAST_FORCE], strict=True))
             lasting = self._settings[_OF_BLOW], old._settings[_OF_BLOW]
             self._settings[_OF_BLOW] = max(lasting, key=lambda blow: float(blow[0]))
         for i, body in enumerate(self.bodies):
             self.tables[at.LAST_FORCE][i] = pushed.get(body, 0.0)
         last = self.tables[at.LAST_VELOCITY]
-        if moved or any(body.body_type == pymunk.Body.KINEMATIC for body in self.bodies):
+        kinematic = [body for body in self.bodies if body.body_type == pymunk.Body.KINEMATIC and body not in moved]
+        moved |= {body: np.array([*body.velocity, body.angular_velocity]) for body in kinematic}
+        if moved:
+            if after is None:
+                carry_along(moved, [(joint.a, joint.b) for joint in self.joints])
             for i, body in enumerate(self.bodies):
                 last[i] = moved.get(body, (*body.velocity, body.angular_velocity))
         for i, joint in enumerate(self.joints):
@@ -142,15 +150,23 @@ class Structure(Readings):
     def _let_go(self) -> np.ndarray:
         """Velocities that the bodies were moved with, for a structure that takes over their joints.
 
-        In a step that has begun, the contacts go back to Chipmunk, and impulses since the last step have been seen to.
+        In a step that has begun, the contacts go back to Chipmunk, and bodies to where their velocities have led them;
+        what impulses since the last step did is not known yet.
         """
         self.superseded = True
+        last = self.tables[at.LAST_VELOCITY]
         if not self._control[at.LEADER]:
-            return self.tables[at.LAST_VELOCITY]
+            return last
         self._control[at.LEADER] = 0
         for place in self.tables[at.PLACES][: self._control[at.CONTACTS]]:
             chipmunk.hand_back(int(place[at.WHERE]))
-        return self.tables[at.START_VELOCITY]
+        put_forth(self.bodies, self.tables)
+        return last
+
+    @property
+    def _has_stepped(self) -> bool:
+        """Whether there was a step before the one that has begun, if one has."""
+        return bool(self._settings[at.BEFORE + at.STEP if self._control[at.LEADER] else at.STEP] > 0.0)
 
     def __getstate__(self) -> dict[str, Any]:
         """What is needed to go on from here: joints, and what they and their space (`SpaceState`) do not say."""

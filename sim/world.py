@@ -30,7 +30,8 @@ from sim.vehicles import Car, add_vehicles
 _REST = 1e-12
 # A run of more would take days.
 _MOST_STEPS = 1e9
-#: Longest part of a step of a scene that something sets going at once [s].
+#: Longest step of a scene that something sets going at once [s]. Parts within a step (`sim.kernels.parts`) would do for
+#: the members, but measures see only what is at the end of one: peaks, forces in an impact, when joints break.
 LONGEST_PART = 1e-4
 
 

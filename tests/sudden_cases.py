@@ -5,6 +5,7 @@ Each case is a function of steps a second and iterations; the time integration i
 
 import itertools
 import math
+from dataclasses import replace
 
 import pymunk
 from conftest import CASES as OPEN
@@ -46,14 +47,16 @@ def sudden_load(rate: int, iterations: int, scheme: tuple[float, float] = IMPLIC
     return highest, float(hinge.plastic_deformation[3])
 
 
-def loaded_beam(space: pymunk.Space, mass: float) -> tuple[sim.Assembly, pymunk.Body]:
+def loaded_beam(
+    space: pymunk.Space, mass: float, scheme: tuple[float, float] = IMPLICIT_EULER
+) -> tuple[sim.Assembly, pymunk.Body]:
     """The cantilever with a mass joined to its tip."""
-    beam = assemble(BEAM, SIX, space, shapes=False)
+    beam = assemble(BEAM, replace(SIX, scheme=scheme), space, shapes=False)
     tip = beam.nodes["tip"]
     body = pymunk.Body(mass, mass * 0.1**2)
     body.position = tuple(tip.now())
     rigid = ElasticPlastic((1e9, 1e9, 1e7), (1e9, 1e9, 1e9))
-    space.add(body, DuctileJoint(tip.body, body, tuple(tip.now()), rigid, direction=0.0))
+    space.add(body, DuctileJoint(tip.body, body, tuple(tip.now()), rigid, direction=0.0, scheme=scheme))
     return beam, body
 
 

@@ -9,9 +9,9 @@ falling crate is stopped within four. So a step of more than half a millisecond 
   structure, or rests on it, is none), and with more than a thousandth of the structure's kinetic and elastic
   energy;
 - so is what forces from outside bring suddenly, see `sudden`;
-- it is over when the structure has turned and swung back: nothing flows any more, and for as long again as it took to
-  store the most elastic energy, no more was stored; or when whole steps would lose less than a thousandth of the blow's
-  energy in a 60th of a second. What n parts lose is known, and a whole step loses n times that.
+- it is over when the structure has turned and swung back: for as long again as its joints went on to take energy, to
+  store it or to flow, they took no more; or when whole steps would lose less than a thousandth of the blow's energy in
+  a 60th of a second. What n parts would lose by implicit Euler is known, and a whole step loses n times that.
 
 So the largest and the lasting deflection are found at any step; what swings behind them is damped as ever. Nothing is
 spent on this where nothing is hit. What constraints of Chipmunk's own tie to a structure, and vehicles, are
@@ -41,12 +41,13 @@ from sim.kernels.layout import (
     INERTIA_M,
     LEDGER_ELASTIC,
     LEDGER_KINETIC,
-    LEDGER_NUMERICAL,
+    LEDGER_PLASTIC,
     OTHER_START,
     OWNER_A,
     OWNER_B,
     STRIKE,
     SUDDEN,
+    UNDAMPED,
     WHOLE_ONLY,
     WHOLE_STEP,
 )
@@ -61,6 +62,8 @@ LONGEST_PART = 0.5e-3
 _SUDDEN = 2.0
 #: Of the structure's energy.
 WORTH_OF_BLOW = 1e-3
+# By what share of what joints took at the most they are to take more for it to count.
+_MORE = 1e-3
 # How long a structure takes to turn and swing back, over how long it takes to turn.
 _BACK = 2.0
 #: Of the blow's energy, lost in a second [1/s].
@@ -74,6 +77,7 @@ def count_parts(head):  # type: ignore[no-untyped-def]
     if parts <= 1:
         return 1
     kinetic, elastic, lasting, new, sudden, c = 0.0, 0.0, 0.0, 0.0, 0.0, head
+    taken = sum_of(head, LEDGER_ELASTIC) + sum_of(head, LEDGER_PLASTIC)
     while c != 0:
         t = views.control(c)
         ledger, settings = views.ledger(t), views.settings(t)
@@ -108,7 +112,7 @@ def count_parts(head):  # type: ignore[no-untyped-def]
                 0.0,
                 0.0,
             )
-            settings[BLOW_LEAST], settings[BLOW_MOST], settings[BLOW_SHARE] = elastic, elastic, worth
+            settings[BLOW_LEAST], settings[BLOW_MOST], settings[BLOW_SHARE] = taken, taken, worth
             c = t[at.NEXT]
     else:
         grow_older(head, kinetic, views.settings(views.control(head))[WHOLE_STEP] / parts)
@@ -121,25 +125,28 @@ def count_parts(head):  # type: ignore[no-untyped-def]
 @kernel
 def grow_older(head, kinetic, h):  # type: ignore[no-untyped-def]
     """Note what became of a blow in a part of length ``h``; its energy is what it set moving, if that is more."""
-    elastic, flowing, c = sum_of(head, LEDGER_ELASTIC), flows(head), head
+    taken, c = sum_of(head, LEDGER_ELASTIC) + sum_of(head, LEDGER_PLASTIC), head
     while c != 0:
         t = views.control(c)
         settings = views.settings(t)
         settings[BLOW] = max(settings[BLOW], kinetic - settings[BLOW_KINETIC])
         settings[BLOW_AGE] += h
-        if elastic <= settings[BLOW_LEAST]:
+        least, most = settings[BLOW_LEAST], settings[BLOW_MOST]
+        if taken <= least:
             # It gives back what was stored before.
-            settings[BLOW_LEAST], settings[BLOW_MOST] = elastic, elastic
-        if elastic >= settings[BLOW_MOST] or flowing:
-            settings[BLOW_MOST], settings[BLOW_MOST_AT] = max(elastic, settings[BLOW_MOST]), settings[BLOW_AGE]
+            settings[BLOW_LEAST], settings[BLOW_MOST] = taken, taken
+        if taken <= least or taken - least >= (1.0 + _MORE) * (most - least):
+            settings[BLOW_MOST], settings[BLOW_MOST_AT] = taken, settings[BLOW_AGE]
         c = t[at.NEXT]
 
 
 @kernel
-def is_over(head, flowed):  # type: ignore[no-untyped-def]
+def is_over(head):  # type: ignore[no-untyped-def]
     """Whether a group has turned and swung back, or stores so much that its blow is little against it."""
     settings = views.settings(views.control(head))
-    back = not flowed and settings[BLOW_AGE] >= _BACK * settings[BLOW_MOST_AT]
+    # Without damping, stiff joints ring before anything else turns.
+    turned = settings[UNDAMPED] == 0.0 or settings[BLOW_MOST] - settings[BLOW_LEAST] >= WORTH * settings[BLOW]
+    back = turned and settings[BLOW_AGE] >= _BACK * settings[BLOW_MOST_AT]
     return back or settings[BLOW] < settings[BLOW_SHARE] * sum_of(head, LEDGER_ELASTIC)
 
 
@@ -183,12 +190,6 @@ def striking_mass(place):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def numerical_loss(head):  # type: ignore[no-untyped-def]
-    """What a group's time integration has dissipated so far [J]."""
-    return sum_of(head, LEDGER_NUMERICAL)
-
-
-@kernel
 def sum_of(head, entry):  # type: ignore[no-untyped-def]
     """An entry of the ledgers of a group, summed [J]."""
     total, c = 0.0, head
@@ -197,18 +198,6 @@ def sum_of(head, entry):  # type: ignore[no-untyped-def]
         total += views.ledger(t)[entry]
         c = t[at.NEXT]
     return total
-
-
-@kernel
-def flows(head):  # type: ignore[no-untyped-def]
-    """Whether any joint of a group flowed last."""
-    c = head
-    while c != 0:
-        t = views.control(c)
-        if t[at.FLOWING] == 1:
-            return True
-        c = t[at.NEXT]
-    return False
 
 
 @kernel

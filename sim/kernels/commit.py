@@ -20,7 +20,7 @@ import numpy as np
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.energy import work_of_shifts, work_on_held
-from sim.kernels.kinematics import lag_of, let_go, rates
+from sim.kernels.kinematics import lag_of, let_go, quadratic, rates
 from sim.kernels.layout import (
     BETA,
     COMMIT_WORDS,
@@ -164,9 +164,9 @@ def commit(t):  # type: ignore[no-untyped-def]
             external -= work_on_held(t, k, velocity, start)
         if t[at.SHIFTED] == 1:
             by_contacts, by_hand = work_of_shifts(t, k, 0), work_of_shifts(t, k, 3)
-            if by_contacts + by_hand < -r[RESULT_ELASTIC]:
+            if by_contacts + by_hand < -max(r[RESULT_ELASTIC], 0.0):
                 # No more can be released than is stored.
-                less = -r[RESULT_ELASTIC] / (by_contacts + by_hand)
+                less = -max(r[RESULT_ELASTIC], 0.0) / (by_contacts + by_hand)
                 by_contacts, by_hand = less * by_contacts, less * by_hand
             contact -= by_contacts
             external += by_hand
@@ -236,6 +236,4 @@ def half_a_step_on(t, k, x0, y0, z0, x, y, z, more, out):  # type: ignore[no-unt
     u, v = lag * x0 + lead * x - more * out[FLOW], lag * y0 + lead * y - more * out[FLOW + 1]
     turn = lag * z0 + lead * z - more * out[FLOW + 2]
     linear = (s[0] - damping[k, 0] * x) * u + (s[1] - damping[k, 1] * y) * v + (s[2] - damping[k, 2] * z) * turn
-    square = stiff[0] * u * u + stiff[3] * v * v + stiff[5] * turn * turn
-    mixed = stiff[1] * u * v + stiff[2] * u * turn + stiff[4] * v * turn
-    return linear + 0.5 * square + mixed
+    return linear + 0.5 * quadratic(stiff, u, v, turn)

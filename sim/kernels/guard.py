@@ -16,7 +16,7 @@ booked with it. Three things keep it from being negative in implicit Euler, one 
 The average-acceleration rule neither dissipates nor creates where the step resolves the motion, and its numerical entry
 goes up and down a little. Pieces that turn by a radian in a step make it create ever more energy. So where any turns by
 more than a quarter of that, steps are taken by implicit Euler, and also once a tenth of the ledger's largest entry has
-been created, until that is gone.
+been created, until that is gone. Parts by it in place of implicit Euler are kept from creating any, as that is.
 """
 
 import math
@@ -36,11 +36,14 @@ from sim.kernels.layout import (
     LEDGER_OWED,
     LEDGER_PLASTIC,
     STEP,
+    UNDAMPED,
     WANTED_BETA,
     WANTED_DELTA,
 )
 from sim.memory import floats, kernel
 
+# β and δ of the average-acceleration rule.
+_AVERAGE = 0.25, 0.0
 # Shares of the ledger's largest entry: what is rounding, and what the average-acceleration rule may create; and by how
 # much bodies may turn in its steps [rad].
 _ROUNDING, _BOUND, _TURN = 1e-13, 0.1, 0.25
@@ -48,13 +51,22 @@ _ROUNDING, _BOUND, _TURN = 1e-13, 0.1, 0.25
 
 @kernel
 def choose_scheme(t, spin):  # type: ignore[no-untyped-def]
-    """Time integration of a step at whose start no body turns faster than ``spin``: that wanted, or implicit Euler."""
+    """Time integration of a step or its parts, at whose start no body turns faster than ``spin``.
+
+    That is the wanted one, or implicit Euler where the average-acceleration rule would fail; and that rule in place of
+    implicit Euler in parts after what came suddenly, and brought much, while nothing touches the structure.
+    """
     settings, ledger = views.settings(t), views.ledger(t)
-    largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
-    least = -_BOUND * largest if settings[BETA] != 0.0 else 0.0
-    implicit = settings[WANTED_BETA] == 0.0 or ledger[LEDGER_NUMERICAL] < least or spin * settings[STEP] > _TURN
-    settings[BETA] = 0.0 if implicit else settings[WANTED_BETA]
-    settings[DELTA] = 1.0 if implicit and settings[WANTED_BETA] != 0.0 else settings[WANTED_DELTA]
+    beta, delta = settings[WANTED_BETA], settings[WANTED_DELTA]
+    if beta == 0.0:
+        if t[at.PARTS] > 1 and settings[UNDAMPED] != 0.0 and t[at.CONTACTS] == 0 and spin * settings[STEP] <= _TURN:
+            beta, delta = _AVERAGE
+    else:
+        largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
+        least = -_BOUND * largest if settings[BETA] != 0.0 else 0.0
+        if ledger[LEDGER_NUMERICAL] < least or spin * settings[STEP] > _TURN:
+            beta, delta = 0.0, 1.0
+    settings[BETA], settings[DELTA] = beta, delta
 
 
 @kernel
@@ -68,7 +80,7 @@ def close_from_below(t, contact, numerical):  # type: ignore[no-untyped-def]
     # Where the average-acceleration rule is wanted, its own entry goes up and down; what a step that is longer than the
     # last one has created is taken back as soon as it moves.
     least = min(numerical, 0.0) if settings[WANTED_BETA] != 0.0 else 0.0
-    if settings[BETA] != 0.0:
+    if settings[BETA] != 0.0 and settings[WANTED_BETA] != 0.0:
         return
     if ledger[LEDGER_NUMERICAL] >= least:
         paid = min(ledger[LEDGER_OWED], max(ledger[LEDGER_NUMERICAL], 0.0))

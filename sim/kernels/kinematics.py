@@ -182,6 +182,13 @@ def rates(gradient, k, va, ia, vb, ib):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def quadratic(stiffness, x, y, z):  # type: ignore[no-untyped-def]
+    """q·K q for a joint's deformation x, y, z and a stiffness whose upper triangle is given row by row."""
+    square = stiffness[0] * x * x + stiffness[3] * y * y + stiffness[5] * z * z
+    return square + 2.0 * (stiffness[1] * x * y + stiffness[2] * x * z + stiffness[4] * y * z)
+
+
+@kernel
 def impulses(gradient, k, x, y, z):  # type: ignore[no-untyped-def]
     """What a joint's impulses do to its bodies: momentum x, y of b, which a gives, and moments on a and on b."""
     c, s, turn = gradient[k, E_X], gradient[k, E_Y], gradient[k, HOLDS] * z

@@ -105,7 +105,8 @@ SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 7, 8, 9
 WANTED_BETA, WANTED_DELTA = 10, 11
 # Chipmunk's step, of which `STEP` may be a part, and over the last one; energy of a blow that lasts, see `blow`.
 WHOLE_STEP, WHOLE_RATIO, BLOW = 12, 13, 14
-# Since the blow began: kinetic energy then, least elastic energy, most after it, when that was, and time passed.
+# Since the blow began: kinetic energy then; elastic energy and plastic work, the least, the most after it; when that
+# was, and time passed.
 BLOW_KINETIC, BLOW_LEAST, BLOW_MOST, BLOW_MOST_AT, BLOW_AGE = 15, 16, 17, 18, 19
 # Energy that forces from outside bring suddenly, see `sudden`; whether every step is to be taken whole.
 SUDDEN, WHOLE_ONLY = 20, 21
@@ -115,7 +116,9 @@ MOVE = 22
 BLOW_SHARE = 23
 # How far surfaces may move until their contacts are to be found anew, and have moved [m].
 MARGIN, TRAVEL = 24, 25
-_NUMBERS = 26
+# Whether impulses brought much of a structure's energy when nothing was on, see `sudden`.
+UNDAMPED = 26
+_NUMBERS = 27
 # All of them again, as they were before the step.
 BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 

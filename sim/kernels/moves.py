@@ -14,12 +14,14 @@ average-acceleration rule comes from the parts of a step (`parts.py`): what move
 whole steps resolve, and half a whole step of it tears stiff joints open.
 """
 
+from sim.chipmunk import BODY_WORDS, X
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import move
 from sim.kernels.guard import relative_velocity, rigid_motion
+from sim.kernels.inertia import mass_of
 from sim.kernels.layout import BETA, MOVE
-from sim.memory import clear, kernel
+from sim.memory import clear, floats, kernel
 
 # Over the step: what is rounding.
 _SAME = 1e-9
@@ -59,3 +61,26 @@ def carry_on(t, i, x, y, turn):  # type: ignore[no-untyped-def]
     carried[i, 0] += x
     carried[i, 1] += y
     carried[i, 2] += turn
+
+
+@kernel
+def keep_moment(t, places, whole):  # type: ignore[no-untyped-def]
+    """Have a free structure's bodies the same angular momentum at ``places`` as where they are, with their velocities.
+
+    Places are shifted for it, each across its body's velocity u relative to the centre of mass, by λ |u|; that keeps
+    the centre where it is. By no more than what the bodies move by in a ``whole`` step.
+    """
+    body_at, moving, velocity = views.body_at(t), t[at.MOVING], views.per_body(t, at.LAST_VELOCITY)
+    _, _, vx, vy, _ = rigid_motion(t, velocity)
+    missing, square = 0.0, 0.0
+    for i in range(moving):
+        b = floats(body_at[i], BODY_WORDS)
+        u, v, m = velocity[i, 0] - vx, velocity[i, 1] - vy, mass_of(b)
+        missing += m * ((b[X] - places[i, 0]) * v - (b[X + 1] - places[i, 1]) * u)
+        square += m * (u * u + v * v)
+    if not abs(missing) <= whole * square:
+        return
+    share = missing / square if square > 0.0 else 0.0
+    for i in range(moving):
+        places[i, 0] += share * (velocity[i, 1] - vy)
+        places[i, 1] -= share * (velocity[i, 0] - vx)

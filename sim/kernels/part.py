@@ -18,7 +18,7 @@ from sim.kernels.contacts import SETTLE, kept, space_slop
 from sim.kernels.energy import close
 from sim.kernels.guard import close_from_below
 from sim.kernels.inertia import add_inertia, mass_of, moment_of, weigh
-from sim.kernels.kinematics import prepare, take_up
+from sim.kernels.kinematics import prepare, quadratic, rates, take_up
 from sim.kernels.layout import (
     BOUNCE,
     EARLIER,
@@ -158,7 +158,10 @@ def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
 
 @kernel
 def loss(head, others, before, pushes):  # type: ignore[no-untyped-def]
-    """What the time integration takes from the bodies in a part, ½ Δv·M Δv [J]; loose bodies may fall freely."""
+    """What implicit Euler takes from the bodies in a part, ½ Δv·M Δv, and from the joints, ½ Δq·K Δq [J].
+
+    Loose bodies may fall freely.
+    """
     lost, c = 0.0, head
     while c != 0:
         t = views.control(c)
@@ -166,6 +169,7 @@ def loss(head, others, before, pushes):  # type: ignore[no-untyped-def]
         for i in range(t[at.MOVING]):
             x, y, w = end[i, 0] - start[i, 0], end[i, 1] - start[i, 1], end[i, 2] - start[i, 2]
             lost += 0.5 * (weight[i, INERTIA_M] * (x * x + y * y) + weight[i, INERTIA_I] * w * w)
+        lost += loss_of_joints(t, end)
         c = t[at.NEXT]
     for i in range(len(others)):
         b = floats(others[i], BODY_WORDS)
@@ -173,4 +177,15 @@ def loss(head, others, before, pushes):  # type: ignore[no-untyped-def]
             x, y = b[VX] - before[i, 0] - pushes[i, 0], b[VX + 1] - before[i, 1] - pushes[i, 1]
             w = b[SPIN] - before[i, 2] - pushes[i, 2]
             lost += 0.5 * (mass_of(b) * (x * x + y * y) + moment_of(b) * w * w)
+    return lost
+
+
+@kernel
+def loss_of_joints(t, velocity):  # type: ignore[no-untyped-def]
+    """Elastic energy ½ Δq·K Δq of what the joints are deformed by at these velocities in a part [J]."""
+    joint_bodies, gradient, stiffness = views.joint_bodies(t), views.gradient(t), views.stiffness(t)
+    h, lost = views.settings(t)[STEP], 0.0
+    for k in range(t[at.JOINTS]):
+        x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
+        lost += 0.5 * h * h * quadratic(stiffness[k], x, y, z)
     return lost

@@ -6,6 +6,8 @@ and contacts are solved, laws and ledger take over what was found, and the struc
 the loose ones that touch them. The last part is what Chipmunk's iterations then work on. In the end the bodies are put
 back, and a pseudo-velocity makes Chipmunk's next move, which is one of a whole step, end where the last part does.
 
+Where nothing holds a structure, its bodies are put back so that their angular momentum is what it is (`moves.py`).
+
 Which surfaces meet, and in which direction, is found anew within the step (`near.py`). In between, their distance g is
 followed, and a contact may close it in a part of length h but not pass it, v_n ≥ - g / h.
 
@@ -29,10 +31,12 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.blow import LONGEST_PART, OVER, flows, forget, grow_older, is_over, numerical_loss
+from sim.kernels.blow import LONGEST_PART, OVER, forget, grow_older, is_over
 from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
+from sim.kernels.guard import choose_scheme
 from sim.kernels.late import go_back, lateness
 from sim.kernels.layout import (
+    BETA,
     BLOW,
     CACHED,
     EARLIER,
@@ -42,10 +46,12 @@ from sim.kernels.layout import (
     STEP,
     STEP_RATIO,
     STRIKE,
+    WANTED_BETA,
     WHERE,
     WHOLE_STEP,
 )
 from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_links
+from sim.kernels.moves import keep_moment
 from sim.kernels.near import fall_behind, hand_over, let_go, look, stand_in
 from sim.kernels.newton import restart
 from sim.kernels.others import (
@@ -83,7 +89,6 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     links = links_of(others, views.stock(views.control(head)))
     before, lost, converged = np.empty((len(others), 3)), 0.0, True
     h = views.settings(views.control(head))[STEP]
-    flowed, dissipated = False, numerical_loss(head)
     for _ in range(parts - 1):
         look(head)
         load_velocities(others, before)
@@ -107,13 +112,10 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
                 return converged
             c = t[at.NEXT]
         lost += end_part(head, others, before, pushes)
-        flowed = flowed or flows(head)
         grow_older(head, 0.0, h)
-    # One is that of velocities, the other that of the joints' deformations: in a vibration they take turns.
-    lost += max(numerical_loss(head) - dissipated, 0.0)
     settings = views.settings(views.control(head))
     worth = OVER * settings[WHOLE_STEP] * settings[BLOW]
-    if parts * lost < worth or is_over(head, flowed):
+    if parts * lost < worth or is_over(head):
         forget(head)
     look(head)
     let_go(head, others, pushes, begun, free)
@@ -151,9 +153,24 @@ def open_step(head, late, parts):  # type: ignore[no-untyped-def]
             if touches[k, STRIKE] > 0.0:
                 touches[k, PUSH] = 0.0
         store_velocities(t, views.per_body(t, at.START_VELOCITY))
+        begin_scheme(t)
         renew(t)
         c = t[at.NEXT]
     return share
+
+
+@kernel
+def begin_scheme(t):  # type: ignore[no-untyped-def]
+    """Choose the time integration of a step's parts.
+
+    Implicit Euler's velocities, before the first of them, count as those with which such a part would have ended.
+    """
+    settings, start, spin = views.settings(t), views.per_body(t, at.START_VELOCITY), 0.0
+    for i in range(t[at.MOVING]):
+        spin = max(spin, abs(start[i, 2]))
+    choose_scheme(t, spin)
+    if settings[BETA] != 0.0 and settings[WANTED_BETA] == 0.0:
+        settings[MOVE] = settings[STEP]
 
 
 @kernel
@@ -201,6 +218,8 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
     if t[at.FAULT] < 0:
         # What the next step is to find where it was: at the place from which plain velocities would have led there.
         body_at, begun, position = views.body_at(t), views.per_body(t, at.BEGUN_AT), views.per_body(t, at.LAST_POSITION)
+        if t[at.FREE] == 1:
+            keep_moment(t, begun, whole)
         for i in range(t[at.MOVING]):
             b = floats(body_at[i], BODY_WORDS)
             put_back(body_at[i], begun[i], h, whole)

@@ -6,6 +6,7 @@ installed.verify()
 collision_tree.verify()
 
 from sim.energy import Energy, energy  # noqa: E402
+from sim.first_touch import stop_at_first_touch  # noqa: E402
 from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint  # noqa: E402  (nothing may run on structs that do not fit)
 from sim.joint_arrays import JointArrays  # noqa: E402
 from sim.laws import LAWS, Bearing, ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic, section_law  # noqa: E402
@@ -61,4 +62,5 @@ __all__ = [
     "radau",
     "section_law",
     "set_going",
+    "stop_at_first_touch",
 ]

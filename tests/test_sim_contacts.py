@@ -62,7 +62,8 @@ def test_a_heavy_box_on_light_pieces_bends_the_beam_as_statics_says(pieces: int,
     shape = pymunk.Poly.create_box(box, (0.2, 0.2))
     shape.friction = 0.5
     space.add(box, shape)
-    for _ in range(round(10.0 / dt)):
+    # The shorter the steps, the longer it swings.
+    for _ in range(300 if dt > 0.01 else 2400):
         space.step(dt)
     # It falls 5 mm, and lies where that has thrown it.
     ei, a = capacity(SECTION, STEEL).EI, box.position.x

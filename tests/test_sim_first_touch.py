@@ -8,6 +8,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+from scene import builtin_text, parse_scene
+from sim import Model, assemble, stop_at_first_touch
 from sim.chipmunk import overlap
 from sim.first_touch import first_touches, moved, rounding
 
@@ -72,3 +74,38 @@ def test_a_body_that_flies_at_a_wall_touches_it_in_time(kind: str) -> None:
     assert touch.time == pytest.approx(ahead / 100.0, abs=space.collision_slop / 100.0)
     assert touch.closing == pytest.approx((100.0, 0.0), abs=1e-9)
     assert math.isclose(touch.time, first_touches(space, [shape.body], 1.0)[0].time)
+
+
+def bent_by_a_fast_ball(rate: int, stopped: bool) -> float:
+    """Plastic work [J] of a cantilever of 50 mm that a ball of 0.1 m and 20 kg flies at with 40 m/s."""
+    space = pymunk.Space()
+    space.gravity, space.collision_slop = (0.0, -9.81), 1e-3
+    strip = parse_scene(builtin_text("cantilever").replace("50x100 mm", "50x50 mm"), "strip")
+    beam = assemble(strip, Model("lobatto", 6, "fibre", fibres=8), space)
+    ball = pymunk.Body(20.0, 0.5 * 20.0 * 0.05**2)
+    ball.position, ball.velocity = (0.85, 0.3137), (0.0, -40.0)
+    space.add(ball, pymunk.Circle(ball, 0.05))
+    for _ in range(round(0.25 * rate)):
+        if stopped:
+            stop_at_first_touch(space, 1.0 / rate)
+        space.step(1.0 / rate)
+    return sum(float(joint.dissipated) for joint in beam.joints)
+
+
+@pytest.mark.parametrize("rate", [60, 240])
+def test_a_ball_that_would_pass_a_strip_within_a_step_is_stopped_by_it(rate: int) -> None:
+    assert bent_by_a_fast_ball(rate, stopped=False) == 0.0
+    assert bent_by_a_fast_ball(rate, stopped=True) == pytest.approx(bent_by_a_fast_ball(1000, stopped=True), rel=0.05)
+
+
+def test_slow_bodies_and_those_on_constraints_are_not_stopped() -> None:
+    space = pymunk.Space()
+    space.add(pymunk.Segment(space.static_body, (-1.0, 0.0), (1.0, 0.0), 0.01))
+    slow, held = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    slow.position, slow.velocity = (0.0, 0.1), (0.0, -1.0)
+    held.position, held.velocity = (0.5, 0.2), (0.0, -40.0)
+    space.add(slow, pymunk.Circle(slow, 0.05), held, pymunk.Circle(held, 0.05))
+    space.add(pymunk.PinJoint(held, space.static_body, (0.0, 0.0), (0.5, 1.0)))
+    assert stop_at_first_touch(space, 1 / 60) == []
+    assert slow.position == (0.0, 0.1)
+    assert held.position == (0.5, 0.2)

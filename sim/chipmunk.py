@@ -6,6 +6,7 @@ pymunk constraint and gives it a table of our own, so that Chipmunk's solver cal
 Offsets are in 8-byte words, for 64-bit builds of pymunk 7. `sim.installed` holds them against the pymunk that there is.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -39,8 +40,8 @@ SLEEP_WORDS = 34
 SPACE_GRAVITY, SPACE_SLOP = 1, 6
 MOVING_BODIES, SLEEPING_ROOTS, CONSTRAINTS_OF_SPACE, ARBITERS_OF_SPACE = 12, 15, 19, 20
 SPACE_SHAPES, SPACE_WORDS = 17, 21
-# Between them: how many steps there were, and how many shapes.
-SPACE_STAMP, SPACE_SHAPE_COUNTER = 10, 16
+# Between them: how many steps there were, the length of the last one, and how many shapes.
+SPACE_STAMP, CURRENT_STEP, SPACE_SHAPE_COUNTER = 10, 11, 16
 # cpArray: how many, as half a word; where they are.
 LIST_COUNT, LIST_ITEMS, LIST_WORDS = 0, 1, 2
 
@@ -214,6 +215,18 @@ def restore_body(body: pymunk.Body, saved: np.ndarray) -> None:
     raw[IDLE_TIME] = saved[-1]
 
 
+def put_body(location: int, place: np.ndarray) -> None:
+    """Put the body at an address to x, y and an angle, with the six words of its transform if they are there, too."""
+    raw = words(location, BODY_WORDS)
+    raw[[X, Y, ANGLE]] = place[:3]
+    if len(place) > 3:
+        raw[COSINE:BODY_WORDS] = place[3:]
+        return
+    c, s = math.cos(place[2]), math.sin(place[2])
+    x, y = raw[CENTRE : CENTRE + 2]
+    raw[COSINE:BODY_WORDS] = c, s, -s, c, place[0] - (c * x - s * y), place[1] - (s * x + c * y)
+
+
 def listed(space: pymunk.Space, which: int) -> np.ndarray:
     """Addresses in one of a space's lists, in order, to be changed in place."""
     head = words(int(words(address(space._space), SPACE_WORDS, np.int64)[which]), LIST_WORDS, np.int64)
@@ -233,6 +246,13 @@ def shape_at(location: int) -> pymunk.Shape:
     shape = pymunk.Shape._from_cp_shape(ffi.cast("cpShape *", location))
     assert shape is not None
     return shape
+
+
+def contacts_of(arbiter: int) -> list[np.ndarray]:
+    """Contacts of the arbiter at an address, to be changed in place."""
+    w = words(arbiter, ARBITER_WORDS, np.int64)
+    first, count = int(w[ARBITER_CONTACTS]), int(w[ARBITER_COUNT]) & 0xFFFFFFFF
+    return [words(first + CONTACT_BYTES * k, CONTACT_WORDS) for k in range(count)]
 
 
 def arbiters_known(space: pymunk.Space) -> list[int]:
@@ -273,6 +293,15 @@ def cached_impulse(constraint: pymunk.Constraint) -> np.ndarray:
     """Impulse of one of Chipmunk's own constraints in the last step, to be changed in place; springs keep none."""
     first, count = CACHED_IMPULSE.get(type(constraint), (0, 0))
     return words(address(constraint._constraint), first + count)[first:]
+
+
+def own_numbers(constraint: pymunk.Constraint) -> np.ndarray:
+    """All numbers of one of Chipmunk's own constraints up to its impulse, to be changed in place; none of a spring.
+
+    pymunk makes some anew from where bodies are: the distance of a pin joint, where a ratchet has got to.
+    """
+    first, count = CACHED_IMPULSE.get(type(constraint), (CONTROL, 0))
+    return words(address(constraint._constraint), first + count)[CONTROL:]
 
 
 def stock_kinds() -> np.ndarray:

@@ -15,7 +15,6 @@ import pymunk
 import shapely
 
 from sim.chipmunk import (
-    ARBITER_CONTACTS,
     ARBITER_COUNT,
     ARBITER_NORMAL,
     ARBITER_SHAPE_A,
@@ -23,11 +22,10 @@ from sim.chipmunk import (
     ARBITER_WORDS,
     CONTACT_BIAS,
     CONTACT_BOUNCE,
-    CONTACT_BYTES,
     CONTACT_NORMAL_MASS,
     CONTACT_R1,
     CONTACT_R2,
-    CONTACT_WORDS,
+    contacts_of,
     next_move,
     shape_at,
     words,
@@ -56,27 +54,21 @@ def turn_round(bodies: Sequence[pymunk.Body], step: float) -> None:
         _turn(arbiter, space, step)
 
 
-def _contacts(arbiter: int) -> list[np.ndarray]:
-    w = words(arbiter, ARBITER_WORDS, np.int64)
-    first, count = int(w[ARBITER_CONTACTS]), int(w[ARBITER_COUNT]) & 0xFFFFFFFF
-    return [words(first + CONTACT_BYTES * k, CONTACT_WORDS) for k in range(count)]
-
-
 def _is_marked(arbiter: int) -> bool:
-    return any(contact[CONTACT_NORMAL_MASS] == -1.0 for contact in _contacts(arbiter))
+    return any(contact[CONTACT_NORMAL_MASS] == -1.0 for contact in contacts_of(arbiter))
 
 
 def _turn(arbiter: int, space: pymunk.Space, step: float) -> None:
     """Make the first touch of an arbiter's two shapes its only contact, if there was one in this step."""
     w = words(arbiter, ARBITER_WORDS, np.int64)
-    for contact in _contacts(arbiter):
+    for contact in contacts_of(arbiter):
         contact[CONTACT_NORMAL_MASS] = 1.0
     a, b = (shape_at(int(w[word])) for word in (ARBITER_SHAPE_A, ARBITER_SHAPE_B))
     time = _touch_time(a, b, step, 0.01 * space.collision_slop)
     if time is None:
         return
     w[ARBITER_COUNT] = (int(w[ARBITER_COUNT]) & ~0xFFFFFFFF) | 1
-    contact = _contacts(arbiter)[0]
+    contact = contacts_of(arbiter)[0]
     line = shapely.shortest_line(moved(a, time), moved(b, time))
     on_a, on_b = (pymunk.Vec2d(*point) for point in shapely.get_coordinates(line))
     normal = (on_b - on_a).normalized()

@@ -93,8 +93,13 @@ def _space_fits() -> bool:
     lib.cpSpaceSetShapeIDCounter(space._space, 59)
     fields = words(address(space._space), at.SPACE_WORDS)
     numbers = words(address(space._space), at.SPACE_WORDS, np.int64)
-    fits = fields[at.SPACE_SLOP] == 43.0 and np.array_equal(fields[at.SPACE_GRAVITY :][:2], [67.0, 71.0])
-    fits &= numbers[at.SPACE_STAMP] & 0xFFFFFFFF == 53 and numbers[at.SPACE_SHAPE_COUNTER] == 59
+    space.step(0.25)
+    fits = (
+        fields[at.CURRENT_STEP] == 0.25
+        and fields[at.SPACE_SLOP] == 43.0
+        and np.array_equal(fields[at.SPACE_GRAVITY :][:2], [67.0, 71.0])
+    )
+    fits &= numbers[at.SPACE_STAMP] & 0xFFFFFFFF == 54 and numbers[at.SPACE_SHAPE_COUNTER] == 59
     return bool(
         fits and words(body_address(body), at.BODY_FULL_WORDS, np.int64)[at.BODY_SPACE] == address(space._space)
     )

@@ -50,8 +50,8 @@ class SpaceState:
         Transforms, pseudo-velocities and times at rest, too.
     corners : list of (pymunk.Poly, list of points)
         In their order, by which Chipmunk knows points of contact again: a polygon that is made anew begins at any.
-    impulses : list of (pymunk.Constraint, array)
-        Of Chipmunk's own constraints in the last step.
+    stock : list of (pymunk.Constraint, array)
+        Numbers of Chipmunk's own constraints, with their impulses in the last step.
     moving : list of pymunk.Body
         Those that are awake, in order.
     asleep : list of list of pymunk.Body
@@ -66,7 +66,7 @@ class SpaceState:
 
     bodies: list[tuple[pymunk.Body, np.ndarray]]
     corners: list[tuple[pymunk.Poly, list[pymunk.Vec2d]]]
-    impulses: list[tuple[pymunk.Constraint, np.ndarray]]
+    stock: list[tuple[pymunk.Constraint, np.ndarray]]
     moving: list[pymunk.Body]
     asleep: list[list[pymunk.Body]]
     constraints: list[pymunk.Constraint]
@@ -83,7 +83,7 @@ class SpaceState:
         return cls(
             [(body, chipmunk.save_body(body)) for body in bodies],
             [(shape, shape.get_vertices()) for shape in shapes if isinstance(shape, pymunk.Poly)],
-            [(c, chipmunk.cached_impulse(c).copy()) for c in constraints if type(c) in chipmunk.CACHED_IMPULSE],
+            [(c, chipmunk.own_numbers(c).copy()) for c in constraints if type(c) in chipmunk.CACHED_IMPULSE],
             [body_at[one] for one in chipmunk.listed(space, MOVING_BODIES).tolist()],
             [[body_at[one] for one in group] for group in chipmunk.sleeping_groups(space)],
             [constraint_at[one] for one in chipmunk.listed(space, CONSTRAINTS_OF_SPACE).tolist()],
@@ -100,8 +100,8 @@ class SpaceState:
             polygon.unsafe_set_vertices(corners)
         for shape in self.shapes:
             shape.cache_bb()
-        for constraint, impulse in self.impulses:
-            chipmunk.cached_impulse(constraint)[:] = impulse
+        for constraint, numbers in self.stock:
+            chipmunk.own_numbers(constraint)[:] = numbers
         bodies = [body for body, _ in self.bodies]
         touching = self.contacts.restore(space, bodies, self.shapes)
         self._put_to_sleep(space)

@@ -1,39 +1,38 @@
-"""A step that has to be refused before it has begun: why, and the space as it was before it.
+"""A step that is refused: why, and the space as it was before it.
 
-Structures put themselves back (`sim.kernels.refusal`).
+Structures put themselves back (`sim.kernels.refusal`); of all else the kernels take notes (`sim.kernels.noted`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
 import numpy as np
 import pymunk
 
 from sim import chipmunk
 from sim.chipmunk import (
-    ANGLE,
-    ARBITER_CONTACTS,
-    ARBITER_COUNT,
-    ARBITER_WORDS,
-    ARBITERS_OF_SPACE,
     BIAS_SPIN,
     BIAS_VX,
-    BODY_FULL_WORDS,
-    BODY_WORDS,
-    CONTACT_BYTES,
     CONTACT_NORMAL_IMPULSE,
     CONTACT_WORDS,
+    CURRENT_STEP,
+    IDLE_TIME,
     MOVING_BODIES,
+    SLEEP_WORDS,
+    SPACE_WORDS,
     SPIN,
     VX,
-    X,
     words,
 )
+from sim.kernels import noted
+from sim.noted import Notes
 
 # Above this, squares are not finite.
 _BOUND = 1e150
+# Over 1 + |x|: nearer than this to where the last step ended, a body has gone back to just there [m, rad].
+_ROUNDING = 1e-12
 
 
 def reason(place: str, bodies: tuple[pymunk.Body, pymunk.Body], moving: Collection[pymunk.Body], step: float) -> str:
@@ -75,54 +74,58 @@ def _out_of_bounds(bodies: tuple[pymunk.Body, pymunk.Body], step: float) -> str:
 
 
 class StepBack:
-    """Velocities, contact impulses and those of Chipmunk's own constraints, noted once a step has moved the bodies.
+    """Loose bodies, contacts and Chipmunk's own constraints of a space in a step, as they were before it.
 
     Parameters
     ----------
     space : pymunk.Space
-        In a step, before any velocity has changed.
     step : float
         [s]
-    own : collection of int
-        Addresses of the bodies that put themselves back.
-    pushes : mapping of int to (3,) array
-        By address, pseudo-velocities with which bodies went into the move.
+    notes : Notes
+        Of this step.
     """
 
-    def __init__(
-        self, space: pymunk.Space, step: float, own: Collection[int], pushes: Mapping[int, np.ndarray]
-    ) -> None:
-        body_at = {chipmunk.body_address(body): body for body in space.bodies}
-        self._bodies = []
-        for one in chipmunk.listed(space, MOVING_BODIES).tolist():
-            if one not in own:
-                b = words(one, BODY_WORDS)
-                velocity, pushed = b[[VX, VX + 1, SPIN]], pushes.get(one, np.zeros(3))
-                # Where the step is no number, neither are places any more.
-                with np.errstate(invalid="ignore"):
-                    place = b[[X, X + 1, ANGLE]] - step * (velocity + pushed)
-                self._bodies.append((body_at[one], place, velocity, pushed))
-        contacts = [contact for one in chipmunk.listed(space, ARBITERS_OF_SPACE).tolist() for contact in _contacts(one)]
-        self._contacts = [(contact, contact.copy()) for contact in contacts]
-        own_impulses = [chipmunk.cached_impulse(constraint) for constraint in space.constraints]
-        self._impulses = [(impulse, impulse.copy()) for impulse in own_impulses]
+    def __init__(self, space: pymunk.Space, step: float, notes: Notes) -> None:
+        self._space, self._step, self._notes = space, step, notes
+        self._loose, self._contacts = notes.loose.copy(), notes.contacts.copy()
+        self._stock = [(now, then.copy()) for now, then in zip(notes.stock, notes.numbers, strict=True)]
+        stamp, ended, self._last_step = notes.table[[noted.STAMP, noted.ENDED, noted.LAST_STEP]].tolist()
+        self._known = ended == stamp - 1
 
     def go(self) -> None:
         """Put it back; after the step."""
-        for body, (x, y, angle), (vx, vy, spin), pushed in self._bodies:
-            body.position, body.angle = (x, y), angle
-            body.velocity, body.angular_velocity = (vx, vy), spin
-            words(chipmunk.body_address(body), BODY_FULL_WORDS)[BIAS_VX : BIAS_SPIN + 1] = pushed
-        for now, before in [*self._contacts, *self._impulses]:
+        for row in self._loose:
+            self._put_back(row)
+        for row in self._contacts:
+            impulses = words(int(row[0].view(np.int64)), CONTACT_WORDS)[CONTACT_NORMAL_IMPULSE:]
+            impulses[:2] = row[1:]
+        for now, before in self._stock:
             now[:] = before
+        if self._space.sleep_time_threshold < math.inf:
+            for one in chipmunk.listed(self._space, MOVING_BODIES).tolist():
+                b = words(one, SLEEP_WORDS)
+                b[IDLE_TIME] = max(b[IDLE_TIME] - self._step, 0.0)
+        notes = self._notes
+        if self._known:
+            words(chipmunk.address(self._space._space), SPACE_WORDS, np.int64)[CURRENT_STEP] = self._last_step
+            notes.table[[noted.ENDED, noted.LAST_STEP]] = notes.table[noted.STAMP], self._last_step
+            notes.loose[:] = self._loose
 
-
-def _contacts(arbiter: int) -> list[np.ndarray]:
-    """Normal and tangential impulses of an arbiter's contacts, to be changed in place."""
-    w = words(arbiter, ARBITER_WORDS, np.int64)
-    first, count = int(w[ARBITER_CONTACTS]), int(w[ARBITER_COUNT]) & 0xFFFFFFFF
-    pair = slice(CONTACT_NORMAL_IMPULSE, CONTACT_NORMAL_IMPULSE + 2)
-    return [words(first + CONTACT_BYTES * k, CONTACT_WORDS)[pair] for k in range(count)]
+    def _put_back(self, row: np.ndarray) -> None:
+        """Put a loose body back to where the last step ended, or where it was put by hand since."""
+        location, speed = int(row[0].view(np.int64)), row[noted.SPEED : noted.SPEED + 3]
+        known = self._known and not math.isnan(row[noted.PLACE])
+        push = row[noted.PUSH : noted.PUSH + 3] if known else np.zeros(3)
+        # Where the step is no number, neither are places any more.
+        with np.errstate(invalid="ignore", over="ignore"):
+            place = row[noted.MOVED : noted.MOVED + 3] - self._step * (speed + push)
+        then = row[noted.PLACE : noted.PLACE + 9]
+        if known and not (np.abs(place - then[:3]) > _ROUNDING * (1.0 + np.abs(then[:3]))).any():
+            place = then
+        chipmunk.put_body(location, place)
+        b = words(location, SLEEP_WORDS)
+        b[[VX, VX + 1, SPIN]] = speed
+        b[BIAS_VX : BIAS_SPIN + 1] = push
 
 
 def raise_after_step(space: pymunk.Space, error: Exception, back: StepBack | None = None) -> None:

@@ -16,6 +16,7 @@ from sim.joint import DuctileJoint
 from sim.kernels import layout as at
 from sim.laws import Law
 from sim.near import Surroundings
+from sim.noted import Notes, notes_of
 from sim.notices import listen
 from sim.ordering import minimum_degree
 from sim.readings import Readings
@@ -66,6 +67,8 @@ class Structure(Readings):
     # While it is restored: what was saved, and how many joints are back.
     _saved: dict[str, Any] | None = None
     _restored = 0
+    # What is noted of the space in a step; once it has been looked through.
+    _notes: Notes
     # In a step that cannot be taken: why, and how the space was before.
     _refusal: tuple[str, StepBack | None] = "", None
 
@@ -274,14 +277,20 @@ class Structure(Readings):
         if self._control[at.ASKED]:
             self._surroundings.answer(self)
             return
+        if not self._control[at.NOTES]:
+            self._notes = notes_of(next(body.space for body in self.bodies if body.space is not None))
+            self._control[at.NOTES] = self._notes.table.ctypes.data
+            return
         fault = int(self._control[at.FAULT])
         if fault >= 0:
             joint = self.joints[fault]
             x, y = joint.at
             place = f"joint {fault} (made at {x:g}, {y:g})"
             if self._control[at.LEADER]:
-                moving = self.bodies[: int(self._control[at.MOVING])]
-                why = reason(place, (joint.a, joint.b), moving, self.step)
+                why = ""
+                if self._control[at.FRESH] == 1:
+                    moving = self.bodies[: int(self._control[at.MOVING])]
+                    why = reason(place, (joint.a, joint.b), moving, self.step)
                 self._refusal = why, self._step_back(_space_of(joint))
                 return
             self._control[at.FAULT] = -1
@@ -309,19 +318,12 @@ class Structure(Readings):
                 joint.ask_for_structure()
 
     def _step_back(self, space: pymunk.Space) -> StepBack:
-        """Have all structures of the space refuse the step that has just begun, and note how all else is."""
+        """Have all other structures of the space refuse the step, too, and note how all else was."""
         structures = {joint.structure for joint in space.constraints if isinstance(joint, DuctileJoint)}
-        own: set[int] = set()
-        pushes: dict[int, np.ndarray] = {}
         for structure in structures:
-            if structure is not None and not structure.bodies[0].is_sleeping:
-                if structure is not self:
-                    structure._control[at.FAULT] = at.WITH_OTHERS
-                moving = int(structure._control[at.MOVING])
-                own.update(structure.tables[at.BODY_AT][:moving].tolist())
-                pushed = structure.tables[at.PUSHES][: structure._control[at.PUSHED]]
-                pushes |= zip(pushed[:, 0].view(np.int64).tolist(), pushed[:, 1:].copy(), strict=True)
-        return StepBack(space, self.step, own, pushes)
+            if structure is not None and structure._control[at.FAULT] < 0 and not structure.bodies[0].is_sleeping:
+                structure._control[at.FAULT] = at.WITH_OTHERS
+        return StepBack(space, float(self._settings[at.WHOLE_STEP]), self._notes)
 
 
 def _space_of(joint: DuctileJoint) -> pymunk.Space:

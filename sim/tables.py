@@ -168,7 +168,7 @@ class Tables:
 
 
 # The plastic state is kept beside these. Gradient and response of the last step weigh the bodies of the next.
-_OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.GRADIENT, at.RESPONSE, at.RESULT)
+_OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.GRADIENT, at.RESPONSE, at.RESULT, at.DEFORMATION)
 _OF_BODIES = (at.LAST_VELOCITY, at.LAST_POSITION, at.LAST_FORCE, at.BEGUN_AT, at.SHIFT)
 _OF_FACTOR = (at.DIAGONAL, at.LOWER_BLOCKS)
 _KEPT = (*_OF_JOINTS, *_OF_BODIES, *_OF_FACTOR, at.SETTINGS, at.LEDGER)

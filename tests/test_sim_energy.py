@@ -268,3 +268,49 @@ def test_a_support_that_sinks_works_while_a_blow_is_taken_in_parts() -> None:
     assert found.numerical >= 0.0
     # What else works on the structure is its own weight and the crate's: no more than both along the way sunk.
     assert worked <= found.external <= worked + 36.0 * 9.81 * 0.1 + 20.0 * 9.81 * 0.4
+
+
+@pytest.mark.parametrize("stiffness", [1e3, 1e9])
+def test_damping_takes_no_more_than_there_was(stiffness: float) -> None:
+    """A thrown body is stopped within a step by far too much damping, and by a stiff joint beside it."""
+    space, body, joint = spring(stiffness, 1e12, damping=1e5)
+    body.velocity = (10.0, 0.0)
+    for _ in range(20):
+        space.step(1 / 60)
+        found = joint.structure.energy
+        assert found.external == pytest.approx(100.0, rel=1e-9)
+        assert 0.0 <= found.viscous <= 100.0
+        assert found.numerical >= 0.0
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 1e3, 1e6])
+def test_average_acceleration_keeps_every_entry_within_the_energy_there_is(stiffness: float) -> None:
+    """Every piece of a free bar is thrown its own way, at 60 Hz; what does so is far faster than the steps resolve."""
+    case = chain(12, law(stiffness), clamped=False, gravity=0.0)
+    structure = Structure(case.structure.joints)
+    structure.scheme = AVERAGE_ACCELERATION
+    random = np.random.default_rng(3)
+    for body in case.bodies:
+        body.velocity, body.angular_velocity = tuple(random.uniform(-3.0, 3.0, 2)), random.uniform(-3.0, 3.0)
+    given = kinetic(case.bodies)
+    for _ in range(100):
+        case.space.step(1 / 60)
+        found = structure.energy
+        assert found.external == pytest.approx(given, rel=1e-9)
+        assert max(found.kinetic, found.elastic, found.plastic, abs(found.numerical)) <= 1.1 * given
+
+
+def test_average_acceleration_keeps_its_energy_at_steps_drawn_at_random() -> None:
+    """A soft cantilever, thrown at its tip, vibrates widely through 800 steps."""
+    case = chain(6, law(1e-3, strength=1e3), gravity=0.0)
+    case.structure.scheme = AVERAGE_ACCELERATION
+    random, most = np.random.default_rng(5), 0.0
+    case.bodies[-1].velocity = (0.0, 10.0)
+    case.space.step(1e-4)
+    begun = case.structure.energy.numerical
+    for _ in range(800):
+        case.space.step(1e-4 * math.exp(random.uniform(-1.0, 1.0)))
+        most = max(most, abs(case.bodies[-1].angle))
+    found = case.structure.energy
+    assert most > 0.1
+    assert abs(found.numerical - begun) <= 0.01 * found.external

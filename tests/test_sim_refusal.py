@@ -9,7 +9,7 @@ import pymunk
 import pytest
 from hard_cases import Case, chain, law
 
-from sim import DuctileJoint, SolverError, Structure
+from sim import DuctileJoint, SolverError, Structure, chipmunk
 from sim.compiling import law_function
 from sim.kernels import layout as at
 from sim.memory import floats
@@ -151,6 +151,65 @@ def test_what_fails_in_a_later_part_of_a_step_takes_the_earlier_ones_along() -> 
     assert case.structure.tables[at.COPY].any(), "some of its parts were taken"
     for now, then in zip(everything(case), before, strict=True):
         np.testing.assert_allclose(now, then, rtol=0.0, atol=1e-14)
+
+
+def aside(space: pymunk.Space) -> None:
+    """A pile on the ground, a pendulum on a pin, a body on a spring, and a bar that sags, far from all else."""
+    ground = pymunk.Segment(space.static_body, (40.0, -0.1), (60.0, -0.1), 0.1)
+    ground.friction = 0.8
+    space.add(ground)
+    for i in range(3):
+        box = pymunk.Body(2.0, 0.1)
+        box.position, shape = (50.0 + 0.01 * i, 0.05 + 0.1 * i), pymunk.Poly.create_box(box, (0.1, 0.1))
+        shape.friction = 0.6
+        space.add(box, shape)
+    bob, hung = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
+    bob.position, hung.position = (71.0, 0.0), (75.0, -1.0)
+    bar = pymunk.Body(3.0, 0.1)
+    bar.position = (80.5, 0.0)
+    space.add(bob, hung, bar, pymunk.PinJoint(space.static_body, bob, (70.0, 0.0)))
+    space.add(pymunk.DampedSpring(space.static_body, hung, (75.0, 0.0), (0.0, 0.0), 0.5, 100.0, 1.0))
+    space.add(DuctileJoint(space.static_body, bar, (80.0, 0.0), law(strength=1e-4), direction=0.0))
+
+
+@pytest.mark.parametrize("sleeps", [False, True])
+def test_what_fails_in_one_structure_takes_back_the_whole_space(sleeps: bool) -> None:
+    """Once a joint's law fails: bodies and their times at rest, contacts, constraints, ledgers."""
+    space = pymunk.Space()
+    space.gravity, space.collision_slop = (0.0, -9.81), 1e-4
+    if sleeps:
+        space.sleep_time_threshold = 10.0
+    weak, other = pymunk.Body(5.0, 0.1), pymunk.Body(5.0, 0.1)
+    other.position = (2.0, 0.0)
+    failing = DuctileJoint(space.static_body, weak, (0.0, 0.0), Fails(1e6, 5e-3), direction=0.0)
+    space.add(weak, other, failing, DuctileJoint(space.static_body, other, (2.0, 0.0), law(), direction=0.0))
+    aside(space)
+    for _ in range(40):
+        space.step(1 / 60)
+
+    def numbers() -> list[np.ndarray]:
+        joints = [c for c in space.constraints if isinstance(c, DuctileJoint)]
+        arbiters = chipmunk.listed(space, chipmunk.ARBITERS_OF_SPACE).tolist()
+        return [
+            *(chipmunk.save_body(body) for body in space.bodies),
+            *(contact[7:9].copy() for arbiter in arbiters for contact in chipmunk.contacts_of(arbiter)),
+            *(np.atleast_1d(c.impulse) for c in space.constraints if isinstance(c, pymunk.PinJoint)),
+            *(np.array(astuple(joint.structure.energy)) for joint in joints if joint.structure is not None),
+            *(joint.structure.force for joint in joints if joint.structure is not None),
+            np.array([space.current_time_step]),
+        ]
+
+    weak.force = (0.0, -1e6)
+    before = numbers()
+    with pytest.raises(SolverError, match="joint 0"):
+        space.step(1 / 50)
+    # The force was used up.
+    before[0][11] = 0.0
+    for now, then in zip(numbers(), before, strict=True):
+        np.testing.assert_allclose(now, then, rtol=0.0, atol=1e-14)
+    for _ in range(10):
+        space.step(1 / 60)
+    assert all(np.isfinite(body.position).all() for body in space.bodies)
 
 
 def test_the_error_of_structures_that_touch_comes_once() -> None:

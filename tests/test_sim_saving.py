@@ -55,6 +55,18 @@ def test_a_saved_run_goes_on_to_the_last_bit(build: type[Case]) -> None:
     assert joint.structure is not case.structure
 
 
+def test_what_pymunk_finds_anew_from_where_bodies_are_is_saved() -> None:
+    """The distance of a pin joint that is stretched, and where a ratchet has got to."""
+    case = chain(4, law(strength=0.01))
+    bob = pymunk.Body(20.0, 1.0)
+    bob.position = (0.5, -0.3)
+    case.space.add(bob, pymunk.PinJoint(case.bodies[-1], bob), pymunk.RatchetJoint(case.bodies[0], bob, 0.0, 0.3))
+    bob.angular_velocity = 8.0
+    trajectory(case.space, 20)
+    saved = pickle.dumps(case.space)
+    assert trajectory(pickle.loads(saved)) == trajectory(case.space)
+
+
 def test_what_a_structure_has_been_through_is_saved() -> None:
     case = yielding()
     trajectory(case.space, 20)

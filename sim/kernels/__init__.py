@@ -12,6 +12,8 @@
 | ``restitution`` | no more bounce than there is energy for |
 | ``commit`` | the end of a step: plastic state, breaking, what the joints bore |
 | ``energy``, ``guard`` | the ledger, and no energy from nowhere |
+| ``resolved`` | the average-acceleration rule only where it resolves how bodies turn |
+| ``refusal``, ``noted`` | a step that is refused, and what else it has changed in the space |
 | ``loose`` | bodies without joints, for the ledger of a space |
 | ``bodies``, ``settle`` | velocities and places of the bodies; joints and contacts in turn until they agree |
 | ``blow``, ``parts`` | when a step is taken in parts, inside the one that Chipmunk takes, and how |

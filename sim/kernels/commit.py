@@ -29,6 +29,7 @@ from sim.kernels.layout import (
     LEDGER_CONTACT,
     LEDGER_ELASTIC,
     LEDGER_EXTERNAL,
+    LEDGER_KINETIC,
     LEDGER_NUMERICAL,
     LEDGER_PLASTIC,
     LEDGER_TO_COME,
@@ -45,9 +46,13 @@ from sim.kernels.layout import (
     SCRATCH_Q,
     SCRATCH_STATE,
     STEP,
+    WANTED_BETA,
 )
 from sim.kernels.residual import reach_of
 from sim.memory import call_law, floats, kernel
+
+# Of a structure's energy.
+_OVERRATED = 0.02
 
 
 @kernel
@@ -119,6 +124,8 @@ def commit(t):  # type: ignore[no-untyped-def]
     scale, result, settings = views.scale(t), views.result(t), views.settings(t)
     ledger, moving = views.ledger(t), t[at.MOVING]
     h, reach, whole = settings[STEP], reach_of(t), flow_share(t)
+    lag, lead, stiff = lag_of(settings), 0.5 * h - reach, t[at.DAMPED] == 1 and is_stiff(t, start, velocity)
+    averages = settings[WANTED_BETA] != 0.0
     out, old = floats(t[at.SCRATCH], COMMIT_WORDS), t[at.SCRATCH] + 8 * SCRATCH_STATE
     broke, flows, breakable = 0, False, t[at.BREAKABLE] == 1
     external, elastic, contact, viscous, numerical = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -154,10 +161,17 @@ def commit(t):  # type: ignore[no-untyped-def]
         lost, second_half = held * work, 0.5 * held * work
         if settings[BETA] != 0.0:
             xl, yl, zl = rates(gradient, k, last, ia, last, ib)
-            at_end += half_a_step_on(t, k, xl, yl, zl, x, y, z, whole - 1.0, out)
+            u, v, turn = lag * xl + lead * x, lag * yl + lead * y, lag * zl + lead * z
+            at_end += half_a_step_on(t, k, x, y, z, u, v, turn, whole - 1.0, out)
             second_half = 0.0
+            # Where the next step is to find it; after implicit Euler, at q*.
+            d[0], d[1], d[2] = r[0] + u, r[1] + v, r[2] + turn
+        elif averages:
+            d[0], d[1], d[2] = r[0], r[1], r[2]
+        damped = 0.0
+        if t[at.DAMPED] == 1:
+            damped = h * (c[0] * taken(x0, x, stiff) + c[1] * taken(y0, y, stiff) + c[2] * taken(z0, z, stiff))
         x, y, z = 0.5 * (x0 + x), 0.5 * (y0 + y), 0.5 * (z0 + z)
-        damped = h * (c[0] * x * x + c[1] * y * y + c[2] * z * z) if t[at.DAMPED] == 1 else 0.0
         given = 0.5 * (r[RESULT_BEFORE] + r[RESULT_ELASTIC]) - damped
         given -= impulse[k, 0] * x + impulse[k, 1] * y + impulse[k, 2] * z
         if ia >= moving or ib >= moving:
@@ -208,6 +222,33 @@ def commit(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def taken(start, end, stiff):  # type: ignore[no-untyped-def]
+    """What viscous damping takes, over its coefficient and the step, where a rate goes from ``start`` to ``end``.
+
+    That is the square of the mean rate; where a step is too ``stiff`` for that, see `is_stiff`, no more than what the
+    damping's force, which is that of the end, did along the mean.
+    """
+    mean = 0.5 * (start + end)
+    return min(max(end * mean, 0.0), mean * mean) if stiff else mean * mean
+
+
+@kernel
+def is_stiff(t, start, end):  # type: ignore[no-untyped-def]
+    """Whether squares of mean rates overrate viscous work by more than a share of the energy that there was.
+
+    As where a body that was thrown is stopped within the step, by damping or by a stiff joint.
+    """
+    joint_bodies, gradient, damping = views.joint_bodies(t), views.gradient(t), views.damping(t)
+    ledger, over = views.ledger(t), 0.0
+    for k in range(t[at.JOINTS]):
+        ia, ib, c = joint_bodies[k, 0], joint_bodies[k, 1], damping[k]
+        x0, y0, z0 = rates(gradient, k, start, ia, start, ib)
+        x1, y1, z1 = rates(gradient, k, end, ia, end, ib)
+        over += 0.25 * (c[0] * (x0 * x0 - x1 * x1) + c[1] * (y0 * y0 - y1 * y1) + c[2] * (z0 * z0 - z1 * z1))
+    return views.settings(t)[STEP] * over > _OVERRATED * (ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC])
+
+
+@kernel
 def copy(source, target, count):  # type: ignore[no-untyped-def]
     """Copy so many numbers from one address to another."""
     there, here = floats(source, count), floats(target, count)
@@ -224,16 +265,13 @@ def go_all_the_way(state, old, count, whole):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def half_a_step_on(t, k, x0, y0, z0, x, y, z, more, out):  # type: ignore[no-untyped-def]
+def half_a_step_on(t, k, x, y, z, u, v, turn, more, out):  # type: ignore[no-untyped-def]
     """Elastic energy of joint k half a step after its position, where the velocities are, less that at q*.
 
-    That is s·dq + ½ dq·K dq for dq = q_n + ½ h q̇₁ - q* less the plastic flow after q*, which is ``more`` times that
-    before it, with its rates of deformation q̇₀ and q̇₁ before and after the step.
+    That is s·dq + ½ dq·K dq for dq = (u, v, turn), q_n + ½ h q̇₁ - q*, less the plastic flow after q*, which is ``more``
+    times that before it; with the rates of deformation q̇₁ = (x, y, z) after the step.
     """
-    damping, settings, response, stiffness = views.damping(t), views.settings(t), views.response(t), views.stiffness(t)
-    h, s, stiff = settings[STEP], response[k], stiffness[k]
-    lag, lead = lag_of(settings), 0.5 * h - reach_of(t)
-    u, v = lag * x0 + lead * x - more * out[FLOW], lag * y0 + lead * y - more * out[FLOW + 1]
-    turn = lag * z0 + lead * z - more * out[FLOW + 2]
+    damping, s, stiff = views.damping(t), views.response(t)[k], views.stiffness(t)[k]
+    u, v, turn = u - more * out[FLOW], v - more * out[FLOW + 1], turn - more * out[FLOW + 2]
     linear = (s[0] - damping[k, 0] * x) * u + (s[1] - damping[k, 1] * y) * v + (s[2] - damping[k, 2] * z) * turn
     return linear + 0.5 * quadratic(stiff, u, v, turn)

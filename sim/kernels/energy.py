@@ -9,9 +9,9 @@ to V₁,
 
 exactly, whatever p is made of. Work from outside is p_ext · V̄: a weight's is that of the way from the middle of one
 move to the middle of the next. Joints take - p_J · V̄ = - λ · J V̄, of which they store what their elastic energy at
-both ends of the move, averaged, has grown by, and dissipate c (J V̄)² h in damping and half the plastic work of this
-move and of the last. What is left over is numerical dissipation. In implicit Euler, with q₀, q₁ and q₂ where the last
-two moves began and ended, it is in every joint
+both ends of the move, averaged, has grown by, and dissipate c (J V̄)² h in damping, less where a step is too long for it
+(see `commit`), and half the plastic work of this move and of the last. What is left over is numerical dissipation. In
+implicit Euler, with q₀, q₁ and q₂ where the last two moves began and ended, it is in every joint
 
     ½ [s₂ · (q₂ - q₀) - (E₂ - E₀)]  +  ½ (s₂ - s₁) · (plastic flow of the last move)  +  ½ s₂ · (κ₁ - κ₀)  -  p_g · V̄.
 
@@ -20,6 +20,10 @@ negative where a joint is thrown back while it yields. κ is what a joint is str
 while they turn, of second order in the angle turned, and matters where it changes. `guard` sees to it that the sum over
 all joints and steps is not negative. In the average-acceleration rule, the elastic energy is that of the deformation
 half a step on, where the velocities are, and all terms cancel.
+
+Where implicit Euler's last move was longer or shorter than this step, that is how far forces from outside have gone at
+its velocities; between whole steps but for the motion as a rigid body of a structure that nothing holds, which deforms
+no joint.
 
 A contact's impulse j does the work j v̄ on each of two bodies. What one gives and the other does not get is lost to
 contact: - j ½ (v₀ + v₁) with the velocities of one relative to the other, which is the loss in an impact by Kelvin's
@@ -32,6 +36,7 @@ work and contact work.
 from sim.chipmunk import BODY_WORDS, CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE, CONTACT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.guard import relative_velocity, rigid_motion
 from sim.kernels.inertia import moment_of
 from sim.kernels.kinematics import impulses, rates
 from sim.kernels.layout import (
@@ -125,13 +130,19 @@ def close(c, t):  # type: ignore[no-untyped-def]
 
 @kernel
 def work_at_start(t, start):  # type: ignore[no-untyped-def]
-    """Work that forces from outside, of held bodies among them, and contacts would do at the ``start`` velocities."""
+    """Work that forces from outside, of held bodies among them, and contacts would do at the ``start`` velocities.
+
+    Between whole steps, at those relative to the motion of the structure as a rigid body, if nothing holds it.
+    """
     external, struck = views.per_body(t, at.EXTERNAL), views.per_body(t, at.CONTACT_IMPULSE)
     joint_bodies, moving, of_outside, of_contacts = views.joint_bodies(t), t[at.MOVING], 0.0, 0.0
+    body_at, frame = views.body_at(t), (0.0, 0.0, 0.0, 0.0, 0.0)
+    if t[at.PARTS] == 1 and t[at.AFTER_PARTS] == 0:
+        frame = rigid_motion(t, start)
     for i in range(moving):
-        for axis in range(3):
-            of_outside += external[i, axis] * start[i, axis]
-            of_contacts += struck[i, axis] * start[i, axis]
+        u, v, w = relative_velocity(body_at[i], start[i], frame)
+        of_outside += external[i, 0] * u + external[i, 1] * v + external[i, 2] * w
+        of_contacts += struck[i, 0] * u + struck[i, 1] * v + struck[i, 2] * w
     for k in range(t[at.JOINTS]):
         if joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving:
             of_outside -= work_on_held(t, k, start, start)

@@ -6,7 +6,8 @@ angle φ in a step under compression, a share of φ² of the energy, and where a
 plastic work of its last move. Taking out overlap may give energy, too; what contacts give beyond what they took is
 booked with it. Three things keep it from being negative in implicit Euler, one after the other:
 
-- a contact's impulse that also balances joints within the step has lost no more in an impact than there was;
+- a contact's impulse that also balances joints within the step has lost no more in an impact than there was, and
+  damping has taken no more;
 - what the step has created is taken out of the motion of the bodies relative to each other again: velocities go towards
   those of the structure moving as a rigid body, or towards rest if it is held, which leaves both momenta of a free
   structure as they are;
@@ -35,6 +36,7 @@ from sim.kernels.layout import (
     LEDGER_NUMERICAL,
     LEDGER_OWED,
     LEDGER_PLASTIC,
+    LEDGER_VISCOUS,
     STEP,
     UNDAMPED,
     WANTED_BETA,
@@ -70,7 +72,7 @@ def choose_scheme(t, spin):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def close_from_below(t, contact, numerical):  # type: ignore[no-untyped-def]
+def close_from_below(t, contact, viscous, numerical):  # type: ignore[no-untyped-def]
     """Keep numerical dissipation from being negative; the ledger's entries as they were before this step [J]."""
     ledger = views.ledger(t)
     if ledger[LEDGER_CONTACT] < 0.0:
@@ -89,6 +91,7 @@ def close_from_below(t, contact, numerical):  # type: ignore[no-untyped-def]
         ledger[LEDGER_NUMERICAL] -= paid
         return
     move_between(ledger, LEDGER_CONTACT, ledger[LEDGER_CONTACT] - contact, least)
+    move_between(ledger, LEDGER_VISCOUS, ledger[LEDGER_VISCOUS] - viscous, least)
     largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
     take_out(t, min(-_ROUNDING * largest, least) - ledger[LEDGER_NUMERICAL])
     ledger[LEDGER_OWED] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC], least)

@@ -97,13 +97,16 @@ def lag_of(settings):  # type: ignore[no-untyped-def]
 def prepare(t):  # type: ignore[no-untyped-def]
     """Deformation and gradient at the bodies' present positions; joints that do not hold get none.
 
-    Also what rounding of positions makes of the residual impulses, as an energy like theirs.
+    Also what rounding of positions makes of the residual impulses, as an energy like theirs. Returns the elastic energy
+    of what the average-acceleration rule finds them to differ by from where the last step left them, see `resolved`.
     """
     joint_bodies, body_at, active = views.joint_bodies(t), views.body_at(t), views.active(t)
     geometry, gradient, stiffness = views.geometry(t), views.gradient(t), views.stiffness(t)
     deformation, lightness = views.per_joint(t, at.DEFORMATION), views.per_joint(t, at.LIGHTNESS)
     settings, weight, last = views.settings(t), views.weight(t), views.per_body(t, at.LAST_VELOCITY)
-    moving, lag, rounding = t[at.MOVING], lag_of(settings), 0.0
+    moving, lag, rounding, strayed, shift = t[at.MOVING], lag_of(settings), 0.0, 0.0, views.shift(t)
+    # Parts of the default scheme's steps are of one length.
+    curved = 2.0 * lag * lag if settings[at.WANTED_BETA] != 0.0 else 0.0
     for k in range(t[at.JOINTS]):
         if active[k] == 0:
             for i in range(at.GRADIENT_WORDS):
@@ -136,16 +139,33 @@ def prepare(t):  # type: ignore[no-untyped-def]
         rounding += light_u * (stiffness[k, 0] * place) ** 2 + light_v * (stiffness[k, 3] * place) ** 2
         rounding += (turn_a + turn_b) * (stiffness[k, 5] * turn) ** 2
         arc = geometry[k, ARC] * kink
+        expected_u, expected_v, expected_turn = deformation[k, 0], deformation[k, 1], deformation[k, 2]
         deformation[k, 0], deformation[k, 1], deformation[k, 2] = u - arc * kink, v, kink
         gradient[k, E_X], gradient[k, E_Y], gradient[k, HOLDS] = c, s, 1.0
         gradient[k, U_A], gradient[k, U_B] = u_a + 2.0 * arc, u_b - 2.0 * arc
         gradient[k, V_A], gradient[k, V_B] = v_a, v_b
         if lag != 0.0:
             x, y, z = rates(gradient, k, last, ia, last, ib)
-            deformation[k, 0] -= lag * x
-            deformation[k, 1] -= lag * y
+            du, dv, dw = last[ib, 0] - last[ia, 0], last[ib, 1] - last[ia, 1], last[ib, 2] - last[ia, 2]
+            du, dv = du - last[ib, 2] * rby + last[ia, 2] * ray, dv + last[ib, 2] * rbx - last[ia, 2] * rax
+            turning, wa, wb = (1.0 - alpha) * last[ia, 2] + alpha * last[ib, 2], last[ia, 2] ** 2, last[ib, 2] ** 2
+            ddx, ddy = wa * rax - wb * rbx, wa * ray - wb * rby
+            ddu = c * ddx + s * ddy + 2.0 * turning * (c * dv - s * du) - turning**2 * u
+            ddv = c * ddy - s * ddx - 2.0 * turning * (c * du + s * dv) - turning**2 * v
+            ddu -= 2.0 * geometry[k, ARC] * dw * dw
+            deformation[k, 0] -= lag * x - curved * ddu
+            deformation[k, 1] -= lag * y - curved * ddv
             deformation[k, 2] -= lag * z
+            u, v, kink = deformation[k, 0] - lag * x, deformation[k, 1] - lag * y, deformation[k, 2] - lag * z
+            du, dv, dw = u - expected_u, v - expected_v, kink - expected_turn
+            if t[at.SHIFTED] == 1:
+                for first in range(0, 6, 3):
+                    by = shift[:, first : first + 3]
+                    x, y, z = rates(gradient, k, by, ia, by, ib)
+                    du, dv, dw = du - x, dv - y, dw - z
+            strayed += 0.5 * quadratic(stiffness[k], du, dv, dw)
     settings[at.ROUNDING] = (_EPSILON * settings[at.STEP]) ** 2 * rounding
+    return strayed
 
 
 @kernel

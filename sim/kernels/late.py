@@ -50,8 +50,10 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
         places, touches, struck = views.places(t), views.touches(t), False
         start, shift, body_at = views.per_body(t, at.START_VELOCITY), views.shift(t), views.body_at(t)
         external, weight = views.per_body(t, at.EXTERNAL), views.weight(t)
+        # By which the last move was; an impulse since then has not moved them yet.
+        last, moving = views.per_body(t, at.LAST_VELOCITY), t[at.MOVING]
         for k in range(t[at.CONTACTS]):
-            touches[k, GAP] -= late * (touches[k, OTHER_START] + own_velocity(c, places[k], touches[k], 0, start))
+            touches[k, GAP] -= late * (touches[k, OTHER_START] + own_velocity(c, places[k], touches[k], 0, last))
             i = which(others, places[k])
             if touches[k, STRIKE] > 0.0:
                 struck = hit = True
@@ -61,11 +63,11 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
                     b[VX + 1] = touches[k, LOOSE_START + 1] + share * pushes[i, 1]
                     b[SPIN] = touches[k, LOOSE_START + 2] + share * pushes[i, 2]
         load_positions(body_at, views.per_body(t, at.BEGUN_AT))
-        for i in range(t[at.MOVING]):
-            move(body_at[i], -late * start[i, 0], -late * start[i, 1], -late * start[i, 2])
+        for i in range(moving):
+            move(body_at[i], -late * last[i, 0], -late * last[i, 1], -late * last[i, 2])
         for i in range(t[at.BODIES]):
             for axis in range(3):
-                shift[i, axis] -= late * start[i, axis]
+                shift[i, axis] -= late * (last[i, axis] if i < moving else start[i, axis])
         t[at.SHIFTED] = 1
         if struck and t[at.FREE] == 1:
             share = (0.0 if t[at.AFTER_PARTS] == 1 else 0.5) - gone

@@ -43,7 +43,9 @@ OWN_CLASS = 36
 # Contacts that may come within the step, after those that Chipmunk found, see `near`; what Python is asked for them.
 NEAR, ASKED = 37, 38
 GATHER, LOOK, DROP = 1, 2, 3
-_FIRST_ADDRESS = 39
+# Address of what is noted of the space in a step, see `noted`; 0 before it was looked through.
+NOTES = 39
+_FIRST_ADDRESS = 40
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -63,7 +65,7 @@ _FIRST_ADDRESS = 39
     SETTINGS,  # (settings,)
     LEDGER,  # (ledger,)
     GRADIENT,  # (joints, 8): see below
-    DEFORMATION,  # (joints, 3): q at the step's start, less the part of the old velocities
+    DEFORMATION,  # (joints, 3): q at the step's start, less the part of the old velocities; then see `resolved`
     LIGHTNESS,  # (joints, 3): diagonal of J M⁻¹ Jᵀ
     IMPULSE,  # (joints, 3): λ
     RESIDUAL,  # (joints, 3)

@@ -9,9 +9,9 @@ the one that begins at the middle of the last move lies ½ h V behind where the 
     by h' V in implicit Euler, and by ½ (h + h') V in the average-acceleration rule,
 
 and where it was h V, the rest is made up for; of a structure that nothing holds, in the motion of its bodies relative
-to each other, and nothing while something touches it, for that would be left behind. Nothing either where the
-average-acceleration rule comes from the parts of a step (`parts.py`): what moves so soon after a blow is faster than
-whole steps resolve, and half a whole step of it tears stiff joints open.
+to their centre of mass, which leaves its angular momentum alone; and nothing while something touches it, for that would
+be left behind. Nothing either where the average-acceleration rule comes from the parts of a step (`parts.py`): what
+moves so soon after a blow is faster than whole steps resolve, and half a whole step of it tears stiff joints open.
 """
 
 from sim.chipmunk import BODY_WORDS, X
@@ -46,7 +46,8 @@ def carry(t, h, last_step, moved, touching):  # type: ignore[no-untyped-def]
         if last[i, 0] != 0.0 or last[i, 1] != 0.0 or last[i, 2] != 0.0:
             return
     t[at.CARRYING] = 1
-    frame = rigid_motion(t, last)
+    x, y, u, v, _ = rigid_motion(t, last)
+    frame = x, y, u, v, 0.0
     for i in range(t[at.MOVING]):
         u, v, w = relative_velocity(body_at[i], last[i], frame)
         carry_on(t, i, rest * u, rest * v, rest * w)

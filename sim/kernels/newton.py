@@ -179,7 +179,7 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
         if steps > enough and error >= 0.25 * best and error <= 1e6 * tolerance * (size + motion):
             converged = True
         best = min(best, error)
-    total = size + motion
+    total = size + motion + rounding / tolerance
     return steps, converged, math.sqrt(error / total) if total > 0.0 else 0.0
 
 

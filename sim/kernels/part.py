@@ -18,8 +18,9 @@ from sim.kernels.contacts import SETTLE, kept, space_slop
 from sim.kernels.energy import close
 from sim.kernels.guard import close_from_below
 from sim.kernels.inertia import add_inertia, mass_of, moment_of, weigh
-from sim.kernels.kinematics import prepare, quadratic, rates, take_up
+from sim.kernels.kinematics import quadratic, rates, take_up
 from sim.kernels.layout import (
+    BETA,
     BOUNCE,
     EARLIER,
     FAR,
@@ -30,6 +31,7 @@ from sim.kernels.layout import (
     INVERSE_M,
     LEDGER_CONTACT,
     LEDGER_NUMERICAL,
+    LEDGER_VISCOUS,
     MOVE,
     OTHER_START,
     RETURN,
@@ -39,6 +41,7 @@ from sim.kernels.layout import (
     WHERE,
     WHOLE_STEP,
 )
+from sim.kernels.resolved import prepare_step
 from sim.kernels.rows import other_velocity
 from sim.memory import clear, floats, kernel
 
@@ -48,7 +51,7 @@ _PRESSED = 1e-3
 
 @kernel
 def renew(t):  # type: ignore[no-untyped-def]
-    """Weights, velocities, deformations and gradients at the start of a step or a part of it."""
+    """Weights and velocities at the start of a part of a step."""
     start, velocity = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.VELOCITY)
     body_at, weight = views.body_at(t), views.weight(t)
     for i in range(t[at.BODIES]):
@@ -56,17 +59,16 @@ def renew(t):  # type: ignore[no-untyped-def]
         if i < t[at.MOVING]:
             weigh(weight, i, floats(body_at[i], BODY_WORDS))
     add_inertia(t)
-    prepare(t)
 
 
 @kernel
 def conclude(c, t):  # type: ignore[no-untyped-def]
     """Let laws and ledger take over what was found; counts the joints that broke."""
     ledger = views.ledger(t)
-    contact, numerical = ledger[LEDGER_CONTACT], ledger[LEDGER_NUMERICAL]
+    contact, viscous, numerical = ledger[LEDGER_CONTACT], ledger[LEDGER_VISCOUS], ledger[LEDGER_NUMERICAL]
     t[at.BROKE] += commit(t)
     close(c, t)
-    close_from_below(t, contact, numerical)
+    close_from_below(t, contact, viscous, numerical)
 
 
 @kernel
@@ -152,6 +154,7 @@ def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
             t[at.SHIFTED] = 0
         take_up(t, 1.0, h)
         renew(t)
+        prepare_step(t, views.settings(t)[BETA] != 0.0)
         c = t[at.NEXT]
     return lost
 

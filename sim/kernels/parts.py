@@ -34,6 +34,7 @@ from sim.kernels import views
 from sim.kernels.blow import LONGEST_PART, OVER, forget, grow_older, is_over
 from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
 from sim.kernels.guard import choose_scheme
+from sim.kernels.kinematics import prepare
 from sim.kernels.late import go_back, lateness
 from sim.kernels.layout import (
     BETA,
@@ -155,6 +156,7 @@ def open_step(head, late, parts):  # type: ignore[no-untyped-def]
         store_velocities(t, views.per_body(t, at.START_VELOCITY))
         begin_scheme(t)
         renew(t)
+        prepare(t)
         c = t[at.NEXT]
     return share
 

@@ -4,9 +4,8 @@ Laws, ledger and positions change where a step is concluded, so there is little 
 what the first of them change is copied before. Bodies go back to where Chipmunk's move of this step took them from.
 
 What comes from outside, forces without bound or a step that is none, is noticed before anything has changed but
-positions, and Python puts the whole space back (`sim.step_back`). What shows while a structure is solved concerns all
-structures that touch each other, and the free loose bodies that touch them; bodies on constraints of Chipmunk's own,
-and whatever else is in the space, have taken their step by then.
+positions; the rest shows while a structure is solved. Either way, all structures of the space go back, and Python puts
+back what it has beside them (`sim.step_back`).
 """
 
 import math
@@ -101,12 +100,17 @@ def keep(head, parts):  # type: ignore[no-untyped-def]
 
 @kernel
 def refuse(head):  # type: ignore[no-untyped-def]
-    """Stop a group's step; until it ends, bodies have their velocities of before."""
-    c = head
+    """Stop the step of a whole space; until it ends, a group's bodies have their velocities of before."""
+    c, told = head, False
     while c != 0:
         t = views.control(c)
-        if t[at.FAULT] < 0:
+        t[at.FRESH] = 0
+        if t[at.FAULT] < 0 or told:
             t[at.FAULT] = at.WITH_OTHERS
+        elif t[at.FAULT] != at.WITH_OTHERS:
+            told = True
+            # Python stops all others.
+            call_notice(t[at.NOTICE], t[at.KEY])
         clear(views.per_joint(t, at.IMPULSE))
         store_velocities(t, views.per_body(t, at.START_VELOCITY))
         c = t[at.NEXT]
@@ -154,14 +158,16 @@ def step_back(t, i, h):  # type: ignore[no-untyped-def]
         views.per_body(t, at.LAST_POSITION),
         views.per_body(t, at.BEGUN_AT),
     )
-    shift, body = views.shift(t), views.body_at(t)[i]
+    shift, body, settings = views.shift(t), views.body_at(t)[i], views.settings(t)
     b = floats(body, BODY_FULL_WORDS)
     for axis in range(3):
         word, push = (ANGLE, BIAS_SPIN) if axis == 2 else (X + axis, BIAS_VX + axis)
         now, b[push] = b[word], shift[i, axis]
         if t[at.AFTER_PARTS] == 1:
             b[word] = begun[i, axis]
-            b[push] = (now - b[word]) / h - last[i, axis] if math.isfinite(now / h) else 0.0
+            # It is to lead there in a step of the last one's length.
+            lead = now - b[word] - h * last[i, axis]
+            b[push] = lead / settings[WHOLE_STEP] if math.isfinite(lead) else 0.0
             continue
         b[word] = now - h * (last[i, axis] + shift[i, axis])
         by_hand = abs(b[word] - noted[i, axis])

@@ -10,16 +10,18 @@ from sim.kernels.bodies import arrive, depart, take_in, write
 from sim.kernels.contacts import collect, hand_back
 from sim.kernels.guard import choose_scheme
 from sim.kernels.inertia import add_inertia
-from sim.kernels.kinematics import prepare, take_up
+from sim.kernels.kinematics import take_up
 from sim.kernels.layout import BEFORE
 from sim.kernels.moves import carry
 from sim.kernels.near import drop, gather, let_come
 from sim.kernels.newton import restart
+from sim.kernels.noted import note_end, note_start
 from sim.kernels.others import even_out, note_pushes
 from sim.kernels.owners import constraints_of
 from sim.kernels.part import conclude
 from sim.kernels.parts import close_step, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
+from sim.kernels.resolved import prepare_step
 from sim.kernels.settle import book_cached, finite, settle_bounces
 from sim.kernels.sudden import sudden_energy
 from sim.memory import call_notice, clear, integers, kernel
@@ -30,6 +32,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     """Start of a step: where the joints are, and what their bodies' velocities were."""
     t = views.control(c)
     settings = views.settings(t)
+    note_start(t)
     for i in range(BEFORE):
         settings[BEFORE + i] = settings[i]
     last_step = settings[at.STEP]
@@ -55,7 +58,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     take_up(t, ratio, last_step)
     carry(t, h, last_step, moved, touching)
     add_inertia(t)
-    prepare(t)
+    prepare_step(t, settings[BEFORE + at.BETA] != 0.0)
     settings[at.SUDDEN] = sudden_energy(t, last_step)
     t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY] = 0, 0, 0
     if touching:
@@ -155,6 +158,7 @@ def finish(c):  # type: ignore[no-untyped-def]
         roll_back(t)
     note_pushes(t)
     drop(t)
+    note_end(t)
     t[at.HEAD], t[at.NEXT] = 0, 0
     if t[at.FAULT] == at.WITH_OTHERS:
         t[at.FAULT] = -1

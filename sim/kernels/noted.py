@@ -1,0 +1,139 @@
+"""What a step changes of a space beside its structures, noted as the step begins, so that it can be taken back.
+
+Loose bodies, contacts and Chipmunk's own constraints, in memory that all structures of a space share (`sim.noted`).
+Which there are is looked up in Python, once; a step compares the space's lists with those that were looked through.
+
+When a step begins, Chipmunk has moved the bodies, and taken their pseudo-velocities from them: both are noted when a
+step ends.
+"""
+
+from sim.chipmunk import (
+    ANGLE,
+    ARBITER_CONTACTS,
+    ARBITER_COUNT,
+    ARBITER_WORDS,
+    ARBITERS_OF_SPACE,
+    BIAS_VX,
+    BODY_FULL_WORDS,
+    CONSTRAINT_SPACE,
+    CONSTRAINT_WORDS,
+    CONSTRAINTS_OF_SPACE,
+    CONTACT_BYTES,
+    CONTACT_NORMAL_IMPULSE,
+    CONTACT_WORDS,
+    COSINE,
+    CURRENT_STEP,
+    LIST_COUNT,
+    LIST_ITEMS,
+    LIST_WORDS,
+    MOVING_BODIES,
+    SPACE_STAMP,
+    SPACE_WORDS,
+    SPIN,
+    VX,
+    X,
+)
+from sim.kernels import layout as at
+from sim.memory import call_notice, floats, integers, kernel
+
+#: Words of the table: the step that was noted, how many structures have begun it and not ended it, the step after which
+#: bodies were noted; bits of the lengths of this one and of the last; copies of the lists of moving bodies and of
+#: constraints, and how long they are; rows of loose bodies and how many; own constraints and how many, and room for
+#: their numbers; rows of contacts, how many there is room for, and how many were noted.
+STAMP, UNDER_WAY, ENDED, THIS_STEP, LAST_STEP = range(5)
+LISTS, LENGTHS = 5, 7
+LOOSE, LOOSE_COUNT, STOCK, STOCK_COUNT, STOCK_NUMBERS, CONTACTS, CONTACTS_ROOM, CONTACTS_COUNT = range(9, 17)
+NOTES_WORDS = 17
+#: A loose body's row: its address; x, y, angle, the six words of its transform, and pseudo-velocities at the end of the
+#: last step; velocities and x, y, angle when this one has moved it.
+PLACE, PUSH, SPEED, MOVED, LOOSE_WORDS = 1, 10, 13, 16, 19
+#: Of own constraints: address of their first number, and how many.
+STOCK_WORDS = 2
+#: Of a contact: its address, and its normal and tangential impulse.
+CONTACT_ROW = 3
+
+
+@kernel
+def note_start(t):  # type: ignore[no-untyped-def]
+    """Note, once in a step, how the rest of the space begins it."""
+    space = integers(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE], SPACE_WORDS)
+    notes = integers(t[at.NOTES], NOTES_WORDS)
+    if t[at.NOTES] == 0 or (notes[STAMP] != space[SPACE_STAMP] and is_outdated(notes, space)):
+        t[at.NOTES] = 0
+        call_notice(t[at.NOTICE], t[at.KEY])
+        if t[at.NOTES] == 0:
+            return  # none of its bodies is in a space any more
+        notes = integers(t[at.NOTES], NOTES_WORDS)
+    if notes[STAMP] == space[SPACE_STAMP]:
+        notes[UNDER_WAY] += 1
+        return
+    notes[STAMP], notes[UNDER_WAY], notes[THIS_STEP] = space[SPACE_STAMP], 1, space[CURRENT_STEP]
+    for i in range(notes[LOOSE_COUNT]):
+        row = notes[LOOSE] + 8 * LOOSE_WORDS * i
+        r, b = floats(row, LOOSE_WORDS), floats(integers(row, 1)[0], BODY_FULL_WORDS)
+        r[SPEED], r[SPEED + 1], r[SPEED + 2] = b[VX], b[VX + 1], b[SPIN]
+        r[MOVED], r[MOVED + 1], r[MOVED + 2] = b[X], b[X + 1], b[ANGLE]
+    into, stock = notes[STOCK_NUMBERS], integers(notes[STOCK], STOCK_WORDS * notes[STOCK_COUNT])
+    for i in range(notes[STOCK_COUNT]):
+        count = stock[STOCK_WORDS * i + 1]
+        own, kept = floats(stock[STOCK_WORDS * i], count), floats(into, count)
+        for k in range(count):
+            kept[k] = own[k]
+        into += 8 * count
+    note_contacts(notes, space)
+
+
+@kernel
+def note_contacts(notes, space):  # type: ignore[no-untyped-def]
+    """Note the impulses that all contacts begin with."""
+    head, noted = integers(space[ARBITERS_OF_SPACE], LIST_WORDS), 0
+    arbiters = integers(head[LIST_ITEMS], head[LIST_COUNT] & 0xFFFFFFFF)
+    for i in range(len(arbiters)):
+        w = integers(arbiters[i], ARBITER_WORDS)
+        for k in range(w[ARBITER_COUNT] & 0xFFFFFFFF):
+            where, row = w[ARBITER_CONTACTS] + CONTACT_BYTES * k, notes[CONTACTS] + 8 * CONTACT_ROW * noted
+            contact, r = floats(where, CONTACT_WORDS), floats(row, CONTACT_ROW)
+            integers(row, 1)[0] = where
+            r[1], r[2] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_NORMAL_IMPULSE + 1]
+            noted += 1
+    notes[CONTACTS_COUNT] = noted
+
+
+@kernel
+def is_outdated(notes, space):  # type: ignore[no-untyped-def]
+    """Whether the space has other bodies or constraints by now, or more contacts than there is room for."""
+    for i in range(2):
+        head = integers(space[MOVING_BODIES if i == 0 else CONSTRAINTS_OF_SPACE], LIST_WORDS)
+        count = head[LIST_COUNT] & 0xFFFFFFFF
+        if count != notes[LENGTHS + i]:
+            return True
+        now, then, differs = integers(head[LIST_ITEMS], count), integers(notes[LISTS + i], count), 0
+        for k in range(count):
+            differs |= now[k] ^ then[k]
+        if differs != 0:
+            return True
+    head, contacts = integers(space[ARBITERS_OF_SPACE], LIST_WORDS), 0
+    arbiters = integers(head[LIST_ITEMS], head[LIST_COUNT] & 0xFFFFFFFF)
+    for i in range(len(arbiters)):
+        contacts += integers(arbiters[i], ARBITER_WORDS)[ARBITER_COUNT] & 0xFFFFFFFF
+    return contacts > notes[CONTACTS_ROOM]
+
+
+@kernel
+def note_end(t):  # type: ignore[no-untyped-def]
+    """Note how the loose bodies end a step, once all structures have."""
+    if t[at.NOTES] == 0:
+        return
+    notes = integers(t[at.NOTES], NOTES_WORDS)
+    notes[UNDER_WAY] -= 1
+    if notes[UNDER_WAY] != 0:
+        return
+    notes[ENDED], notes[LAST_STEP] = notes[STAMP], notes[THIS_STEP]
+    for i in range(notes[LOOSE_COUNT]):
+        row = notes[LOOSE] + 8 * LOOSE_WORDS * i
+        r, b = floats(row, LOOSE_WORDS), floats(integers(row, 1)[0], BODY_FULL_WORDS)
+        r[PLACE], r[PLACE + 1], r[PLACE + 2] = b[X], b[X + 1], b[ANGLE]
+        for k in range(6):
+            r[PLACE + 3 + k] = b[COSINE + k]
+        for k in range(3):
+            r[PUSH + k] = b[BIAS_VX + k]

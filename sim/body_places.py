@@ -58,7 +58,7 @@ def put_even(bodies: Sequence[pymunk.Body], tables: Tables) -> float:
                 x, y, angle = tables[at.LAST_POSITION][i].tolist()
                 body.position, body.angle = (x, y), angle
                 chipmunk.push_apart(body, tables[at.SHIFT][i, :3])
-    return float(settings[at.WHOLE_STEP] - settings[at.STEP])
+    return float(settings[at.WHOLE_STEP] - settings[at.NEXT_MOVE])
 
 
 def _centre(body: pymunk.Body) -> pymunk.Vec2d:

@@ -55,7 +55,7 @@ def succeed(
             tables.state(joint.index)[:] = heir.state
             tables[at.RESULT][joint.index] = heir.result
     tables[at.SETTINGS][:] = before[at.SETTINGS]
-    tables[at.SETTINGS][at.STEP] = before[at.SETTINGS][at.WHOLE_STEP]
+    tables[at.SETTINGS][[at.STEP, at.NEXT_MOVE]] = before[at.SETTINGS][at.WHOLE_STEP]
     for count in (at.NEWTON_STEPS, at.UNCONVERGED):
         tables.control[count] = before.control[count]
     # What bore on pieces that are new is not known, and not sudden.

@@ -107,7 +107,7 @@ def recut(
     wait = put_even(structure.bodies, structure.tables)
     moving = _Moving([piece.body for piece in pieces.of[name]])
     undamped = bool(structure.tables[at.SETTINGS][at.BETA] != 0.0)
-    reach = structure.step * (0.5 if undamped else 1.0)
+    reach = structure.tables[at.SETTINGS][at.NEXT_MOVE] * (0.5 if undamped else 1.0)
     now, then = (_Line.of(coarse, fine, shares, moving, old, wait + ahead) for ahead in (0.0, reach))
     if now.poses is None or then.poses is None:
         return None

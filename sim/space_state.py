@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import copyreg
 import weakref
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymunk
@@ -19,6 +20,9 @@ from sim import chipmunk
 from sim.chipmunk import ARBITERS_OF_SPACE, CONSTRAINTS_OF_SPACE, MOVING_BODIES
 from sim.collision_tree import CollisionTrees
 from sim.contact_graph import ContactGraph
+
+if TYPE_CHECKING:
+    from sim.structure import Structure
 
 # Of `pickle`: objects are made empty, then given their state.
 _PROTOCOL = 2
@@ -61,6 +65,8 @@ class SpaceState:
     shapes : list of pymunk.Shape
         By which the following know them.
     contacts : ContactGraph
+    pushes : list of (Structure, list of (pymunk.Body, array))
+        Loose bodies that structures moved along in the last step.
     trees : CollisionTrees or None
     """
 
@@ -72,6 +78,7 @@ class SpaceState:
     constraints: list[pymunk.Constraint]
     shapes: list[pymunk.Shape]
     contacts: ContactGraph
+    pushes: list[tuple[Structure, list[tuple[pymunk.Body, np.ndarray]]]]
     trees: CollisionTrees | None
 
     @classmethod
@@ -89,6 +96,7 @@ class SpaceState:
             [constraint_at[one] for one in chipmunk.listed(space, CONSTRAINTS_OF_SPACE).tolist()],
             shapes,
             ContactGraph.of(space, bodies, shapes),
+            _pushes(constraints, body_at),
             CollisionTrees.of(space, shapes),
         )
 
@@ -111,6 +119,8 @@ class SpaceState:
         chipmunk.list_anew(space, ARBITERS_OF_SPACE, touching)
         for body, numbers in self.bodies:
             chipmunk.restore_body(body, numbers)
+        for structure, pushes in self.pushes:
+            structure.tables.restore_pushes([(chipmunk.body_address(body), by) for body, by in pushes])
         if self.trees is not None:
             self.trees.restore(space, self.shapes)
         look_after(space)
@@ -124,6 +134,19 @@ class SpaceState:
             for body in reversed(others):
                 body.sleep_with_group(root)
         space.sleep_time_threshold = threshold
+
+
+def _pushes(
+    constraints: Iterable[pymunk.Constraint], body_at: dict[int, pymunk.Body]
+) -> list[tuple[Structure, list[tuple[pymunk.Body, np.ndarray]]]]:
+    from sim.joint import DuctileJoint
+
+    joints = [c for c in constraints if isinstance(c, DuctileJoint)]
+    structures = dict.fromkeys(joint.structure for joint in joints if joint.structure is not None)
+    return [
+        (structure, [(body_at[body], by) for body, by in structure.tables.pushes() if body in body_at])
+        for structure in structures
+    ]
 
 
 def _take_apart(space: pymunk.Space) -> Any:

@@ -155,6 +155,17 @@ class Tables:
         arrays = {str(word): self[word].copy() for word in words}
         return arrays | {"states": self._states.copy(), "control": self.control[list(_KEPT_CONTROL)].copy()}
 
+    def pushes(self) -> list[tuple[int, np.ndarray]]:
+        """Address and pseudo-velocities of each loose body that the last step moved along."""
+        rows = self[at.PUSHES][: self.control[at.PUSHED]]
+        return [(int(row[:1].view(np.int64)[0]), row[1:].copy()) for row in rows]
+
+    def restore_pushes(self, pushes: list[tuple[int, np.ndarray]]) -> None:
+        """Put back what `pushes` gave, with the addresses that the bodies have now."""
+        for row, (body, velocities) in zip(self[at.PUSHES], pushes, strict=False):
+            row[:1].view(np.int64)[0], row[1:] = body, velocities
+        self.control[at.PUSHED] = len(pushes)
+
     def restore(self, kept: dict[str, np.ndarray]) -> None:
         """Put back what `kept` gave."""
         if str(at.PATTERN) in kept:

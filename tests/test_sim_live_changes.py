@@ -38,7 +38,8 @@ def test_a_structure_falls_asleep_loses_nothing_and_wakes_when_touched() -> None
     for _ in range(3):
         space.step(1 / 60)
     assert not any(body.is_sleeping for body in case.bodies)
-    assert abs(case.structure.force[0, 2]) > abs(force[0, 2])
+    # Of the ball's 66 J.
+    assert case.structure.energy.external > 50.0 + ledger.external
     assert case.structure.unconverged == 0
 
 

@@ -106,7 +106,7 @@ def test_what_touches_and_what_sleeps_goes_on_to_the_last_bit(build: Callable[[]
 
 def test_bodies_sleep_and_wake_in_what_is_compared() -> None:
     space, sleeping = pile_asleep(), []
-    for _ in range(8):
+    for _ in range(10):
         trajectory(space, 40)
         sleeping.append(sum(body.is_sleeping for body in space.bodies))
     assert max(sleeping) > 8

@@ -2,8 +2,8 @@
 
 Implicit Euler takes ½ Δv·M Δv from what changes its velocities by Δv in a step, and a contact acts over whole steps. A
 body of speed v that is stopped within N steps so loses the N-th part of its energy to the time integration. At 60 Hz a
-falling crate is stopped within four. So a step of more than half a millisecond is taken in parts of at most that, see
-`parts`, from a blow on until it is over:
+falling crate is stopped within four. So a step is taken in parts, see `parts` and `lengths`, from a blow on until it
+is over:
 
 - a blow is a contact with a speed of approach beyond what outer forces give in two steps (what is laid down on a
   structure, or rests on it, is none), and with more than a thousandth of the structure's kinetic and elastic
@@ -11,7 +11,8 @@ falling crate is stopped within four. So a step of more than half a millisecond 
 - so is what forces from outside bring suddenly, see `sudden`;
 - it is over when the structure has turned and swung back: for as long again as its joints went on to take energy, to
   store it or to flow, they took no more; or when whole steps would lose less than a thousandth of the blow's energy in
-  a 60th of a second. What n parts would lose by implicit Euler is known, and a whole step loses n times that.
+  a 60th of a second. What a part would lose by implicit Euler is known, and a step n times
+  as long loses n times that in its time.
 
 So the largest and the lasting deflection are found at any step; what swings behind them is damped as ever. Nothing is
 spent on this where nothing is hit. What constraints of Chipmunk's own tie to a structure, and vehicles, are
@@ -27,6 +28,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.complement import relative
 from sim.kernels.layout import (
+    BEFORE,
     BLOW,
     BLOW_AGE,
     BLOW_KINETIC,
@@ -42,6 +44,7 @@ from sim.kernels.layout import (
     LEDGER_ELASTIC,
     LEDGER_KINETIC,
     LEDGER_PLASTIC,
+    NEXT_MOVE,
     OTHER_START,
     OWNER_A,
     OWNER_B,
@@ -51,13 +54,12 @@ from sim.kernels.layout import (
     WHOLE_ONLY,
     WHOLE_STEP,
 )
+from sim.kernels.lengths import longest, note_shortest
 from sim.kernels.links import MOST_LINKED, reach
 from sim.kernels.rows import own_velocity
 from sim.kernels.sudden import WORTH
 from sim.memory import floats, kernel
 
-#: Longest part of a step while a blow lasts [s].
-LONGEST_PART = 0.5e-3
 # Over what outer forces give in a step.
 _SUDDEN = 2.0
 #: Of the structure's energy.
@@ -71,18 +73,16 @@ OVER = 0.05
 
 
 @kernel
-def count_parts(head):  # type: ignore[no-untyped-def]
-    """In how many parts a group of structures takes the step that begins."""
-    parts = math.ceil(views.settings(views.control(head))[WHOLE_STEP] / LONGEST_PART - 1e-6)
-    if parts <= 1:
-        return 1
+def takes_parts(head):  # type: ignore[no-untyped-def]
+    """Whether a group of structures takes the step that begins in parts."""
+    of_head = views.settings(views.control(head))
     kinetic, elastic, lasting, new, sudden, c = 0.0, 0.0, 0.0, 0.0, 0.0, head
     taken = sum_of(head, LEDGER_ELASTIC) + sum_of(head, LEDGER_PLASTIC)
     while c != 0:
         t = views.control(c)
         ledger, settings = views.ledger(t), views.settings(t)
         if t[at.SPREAD] == 1 or settings[WHOLE_ONLY] != 0.0:
-            return 1
+            return False
         kinetic, elastic = kinetic + ledger[LEDGER_KINETIC], elastic + ledger[LEDGER_ELASTIC]
         lasting, sudden = max(lasting, settings[BLOW]), sudden + settings[SUDDEN]
         places, touches, lies = views.places(t), views.touches(t), False
@@ -102,6 +102,8 @@ def count_parts(head):  # type: ignore[no-untyped-def]
     new = max(new, sudden)
     if new > 0.0 or lasting == 0.0:
         lasting = max(lasting, new)
+        if lasting > 0.0:
+            note_shortest(head, new > sudden)
         c = head
         while c != 0:
             t = views.control(c)
@@ -115,11 +117,12 @@ def count_parts(head):  # type: ignore[no-untyped-def]
             settings[BLOW_LEAST], settings[BLOW_MOST], settings[BLOW_SHARE] = taken, taken, worth
             c = t[at.NEXT]
     else:
-        grow_older(head, kinetic, views.settings(views.control(head))[WHOLE_STEP] / parts)
-    if lasting == 0.0 or reach(head, np.empty(MOST_LINKED, np.int64)) < 0:
+        grow_older(head, kinetic, of_head[BEFORE + NEXT_MOVE])
+    in_parts = lasting > 0.0 and of_head[WHOLE_STEP] > longest(of_head, of_head[BLOW_AGE])
+    if not in_parts or reach(head, np.empty(MOST_LINKED, np.int64)) < 0:
         forget(head)
-        return 1
-    return parts
+        return False
+    return True
 
 
 @kernel

@@ -115,8 +115,10 @@ def get_impulse(digest: str) -> Callable[..., float]:
             return 0.0
         t = views.control(own[CONTROL])
         p = views.per_joint(t, at.IMPULSE)[own[CONTROL + 1]]
+        settings = views.settings(t)
         # That of the last part, for all of them.
-        return max(t[at.PARTS], 1) * math.hypot(p[0], p[1])
+        whole = settings[at.WHOLE_STEP] / settings[at.STEP] if settings[at.STEP] > 0.0 else 1.0
+        return whole * math.hypot(p[0], p[1])
 
     return get_impulse
 

@@ -124,7 +124,8 @@ def commit(t):  # type: ignore[no-untyped-def]
     scale, result, settings = views.scale(t), views.result(t), views.settings(t)
     ledger, moving = views.ledger(t), t[at.MOVING]
     h, reach, whole = settings[STEP], reach_of(t), flow_share(t)
-    lag, lead, stiff = lag_of(settings), 0.5 * h - reach, t[at.DAMPED] == 1 and is_stiff(t, start, velocity)
+    lag, lead = lag_of(settings), 0.5 * settings[at.NEXT_MOVE] - reach
+    stiff = t[at.DAMPED] == 1 and is_stiff(t, start, velocity)
     averages = settings[WANTED_BETA] != 0.0
     out, old = floats(t[at.SCRATCH], COMMIT_WORDS), t[at.SCRATCH] + 8 * SCRATCH_STATE
     broke, flows, breakable = 0, False, t[at.BREAKABLE] == 1

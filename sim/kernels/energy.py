@@ -49,6 +49,7 @@ from sim.kernels.layout import (
     LEDGER_KINETIC,
     LEDGER_NUMERICAL,
     MOVE,
+    NEXT_MOVE,
     OTHER_START,
     SPREAD_IMPULSE,
     STEP,
@@ -57,6 +58,9 @@ from sim.kernels.layout import (
 )
 from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, kernel
+
+# Of a step.
+_ROUNDING = 1e-9
 
 
 @kernel
@@ -110,13 +114,21 @@ def close(c, t):  # type: ignore[no-untyped-def]
                 turning += mass * (end[i, axis] - solved[i, axis]) * mean
                 if axis == 2:
                     turning -= (weight[i, INERTIA_I] - mass) * solved[i, axis] * mean
-    if settings[BETA] == 0.0 and settings[MOVE] != settings[STEP]:
-        # The start's velocities have carried forces another way than that of a step.
-        share, (of_outside, of_contacts) = 0.5 * (1.0 - settings[MOVE] / settings[STEP]), work_at_start(t, start)
-        less = share * of_outside
-        if touching and settings[MOVE] < settings[STEP]:
+    before_step, after_step = 1.0 - settings[MOVE] / settings[STEP], 1.0 - settings[NEXT_MOVE] / settings[STEP]
+    if settings[BETA] == 0.0 and (before_step != 0.0 or after_step != 0.0):
+        # Velocities carry forces another way than that of a step.
+        of_outside, of_contacts = work_at(t, start)
+        less, bearing = 0.5 * before_step * of_outside, 0.5 * before_step * of_contacts
+        if after_step != 0.0:
+            of_outside, of_contacts = work_at(t, end)
+            less, bearing = less + 0.5 * after_step * of_outside, bearing + 0.5 * after_step * of_contacts
+        if touching and abs(before_step + after_step) <= _ROUNDING:
+            # So have contacts that bear, in parts of a step; what bodies give and get stays what it is.
+            ledger[LEDGER_CONTACT] += bearing
+            ledger[LEDGER_NUMERICAL] -= bearing
+        elif touching and before_step > 0.0:
             # Contacts that bear have done so, too; those of a blow, before whose first part bodies moved further, not.
-            less += min(share * of_contacts, 0.0)
+            less += min(bearing, 0.0)
         outside -= less
         ledger[LEDGER_NUMERICAL] -= less
     given, arrived = contacts(c, t, start, end)
@@ -129,8 +141,8 @@ def close(c, t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def work_at_start(t, start):  # type: ignore[no-untyped-def]
-    """Work that forces from outside, of held bodies among them, and contacts would do at the ``start`` velocities.
+def work_at(t, velocity):  # type: ignore[no-untyped-def]
+    """Work that forces from outside, of held bodies among them, and contacts would do at these velocities.
 
     Between whole steps, at those relative to the motion of the structure as a rigid body, if nothing holds it.
     """
@@ -138,14 +150,14 @@ def work_at_start(t, start):  # type: ignore[no-untyped-def]
     joint_bodies, moving, of_outside, of_contacts = views.joint_bodies(t), t[at.MOVING], 0.0, 0.0
     body_at, frame = views.body_at(t), (0.0, 0.0, 0.0, 0.0, 0.0)
     if t[at.PARTS] == 1 and t[at.AFTER_PARTS] == 0:
-        frame = rigid_motion(t, start)
+        frame = rigid_motion(t, velocity)
     for i in range(moving):
-        u, v, w = relative_velocity(body_at[i], start[i], frame)
+        u, v, w = relative_velocity(body_at[i], velocity[i], frame)
         of_outside += external[i, 0] * u + external[i, 1] * v + external[i, 2] * w
         of_contacts += struck[i, 0] * u + struck[i, 1] * v + struck[i, 2] * w
     for k in range(t[at.JOINTS]):
         if joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving:
-            of_outside -= work_on_held(t, k, start, start)
+            of_outside -= work_on_held(t, k, velocity, velocity)
     return of_outside, of_contacts
 
 

@@ -58,18 +58,18 @@ def add_inertia(t):  # type: ignore[no-untyped-def]
     gradient, impulse, response = views.gradient(t), views.per_joint(t, at.IMPULSE), views.response(t)
     damping, geometry, settings = views.damping(t), views.geometry(t), views.settings(t)
     excess, velocity = views.per_body(t, at.SOLUTION), views.per_body(t, at.VELOCITY)
-    moving, h, any_pulls = t[at.MOVING], settings[at.STEP], False
-    reach = h * (settings[at.BETA] + settings[at.DELTA])
+    moving, move, any_pulls = t[at.MOVING], settings[at.NEXT_MOVE], False
+    factor, reach = settings[at.STEP] * move, move * (settings[at.BETA] + settings[at.DELTA])
     t[at.TURNING] = 0
     for k in range(t[at.JOINTS]):
         x, y = impulse[k, 0], impulse[k, 1]
         if x == 0.0 and y == 0.0:
             continue
-        bending = h * h * response[k, TANGENT + 5]
+        bending = factor * response[k, TANGENT + 5]
         if t[at.DAMPED] == 1:
-            bending -= h * h * damping[k, 2] / reach
+            bending -= factor * damping[k, 2] / reach
         arms = abs(geometry[k, 0]) + abs(geometry[k, 1]) + abs(geometry[k, 2]) + abs(geometry[k, 3])
-        if h * (abs(x) + abs(y)) * arms <= bending:
+        if move * (abs(x) + abs(y)) * arms <= bending:
             continue  # it cannot outweigh what bends against it
         if not any_pulls:
             any_pulls = True
@@ -80,7 +80,7 @@ def add_inertia(t):  # type: ignore[no-untyped-def]
             if i < moving:
                 b = floats(body_at[i], BODY_WORDS)
                 rx, ry = turned(b, geometry[k, ANCHOR_A + 2 * side], geometry[k, ANCHOR_A + 2 * side + 1])
-                outwards = h * (px * rx + py * ry)
+                outwards = move * (px * rx + py * ry)
                 excess[i, 2] += (outwards if side == 1 else -outwards) - bending
     if not any_pulls:
         return

@@ -11,7 +11,7 @@ from sim.kernels import views
 from sim.kernels.bodies import load_positions, move
 from sim.kernels.contacts import space_slop
 from sim.kernels.inertia import moment_of
-from sim.kernels.layout import GAP, INVERSE_M, LOOSE_START, OTHER_START, STEP, STEP_RATIO, STRIKE, WHOLE_STEP
+from sim.kernels.layout import GAP, INVERSE_M, LOOSE_START, MOVE, OTHER_START, STRIKE, WHOLE_STEP
 from sim.kernels.others import met, pushed, touched, which
 from sim.kernels.rows import own_velocity
 from sim.memory import floats, kernel
@@ -19,7 +19,7 @@ from sim.memory import floats, kernel
 
 @kernel
 def lateness(head):  # type: ignore[no-untyped-def]
-    """How long ago those that strike have touched, at most the last step [s]."""
+    """How long ago those that strike have touched, at most the last move [s]."""
     late, c = 0.0, head
     while c != 0:
         t = views.control(c)
@@ -29,7 +29,7 @@ def lateness(head):  # type: ignore[no-untyped-def]
             here = t[at.AFTER_PARTS] == 1 and touches[k, GAP] >= -space_slop(t)
             if touches[k, STRIKE] > 0.0 and not here:
                 late = max(late, -touches[k, GAP] / touches[k, STRIKE])
-        late = min(late, settings[STEP] / settings[STEP_RATIO])
+        late = min(late, settings[MOVE])
         c = t[at.NEXT]
     return late
 

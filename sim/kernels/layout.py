@@ -120,7 +120,11 @@ BLOW_SHARE = 23
 MARGIN, TRAVEL = 24, 25
 # Whether impulses brought much of a structure's energy when nothing was on, see `sudden`.
 UNDAMPED = 26
-_NUMBERS = 27
+# For how long the velocities that a step ends with are to move the bodies: `STEP`, but in parts of one, see `parts`.
+NEXT_MOVE = 27
+# Shortest part of a step while a blow lasts, see `lengths`.
+SHORTEST = 28
+_NUMBERS = 29
 # All of them again, as they were before the step.
 BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 

@@ -28,7 +28,7 @@ _SAME = 1e-9
 
 
 @kernel
-def carry(t, h, last_step, moved, touching):  # type: ignore[no-untyped-def]
+def carry(t, h, last_move, moved, touching):  # type: ignore[no-untyped-def]
     """Have bodies that have ``moved`` for so long moved as far as they should be, and note how long that is."""
     settings, body_at = views.settings(t), views.body_at(t)
     if t[at.CARRYING] == 1:
@@ -36,8 +36,8 @@ def carry(t, h, last_step, moved, touching):  # type: ignore[no-untyped-def]
         t[at.CARRYING] = 0
     settings[MOVE] = moved
     implicit = settings[BETA] == 0.0
-    rest = (last_step if implicit else 0.5 * (last_step + h)) - moved
-    if last_step == 0.0 or abs(rest) <= _SAME * h or touching or t[at.CONTACTS] != 0:
+    rest = (last_move if implicit else 0.5 * (last_move + h)) - moved
+    if last_move == 0.0 or abs(rest) <= _SAME * h or touching or t[at.CONTACTS] != 0:
         return
     if not implicit and t[at.AFTER_PARTS] == 1:
         return
@@ -51,7 +51,7 @@ def carry(t, h, last_step, moved, touching):  # type: ignore[no-untyped-def]
     for i in range(t[at.MOVING]):
         u, v, w = relative_velocity(body_at[i], last[i], frame)
         carry_on(t, i, rest * u, rest * v, rest * w)
-    settings[MOVE] = last_step if implicit else h
+    settings[MOVE] = last_move if implicit else h
 
 
 @kernel

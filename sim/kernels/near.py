@@ -22,7 +22,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.blow import LONGEST_PART, WORTH_OF_BLOW, striking_mass
+from sim.kernels.blow import WORTH_OF_BLOW, striking_mass
 from sim.kernels.bodies import put
 from sim.kernels.contacts import load_loose
 from sim.kernels.late import behind_in
@@ -39,17 +39,18 @@ from sim.kernels.layout import (
     LEDGER_ELASTIC,
     LEDGER_KINETIC,
     MARGIN,
+    NEXT_MOVE,
     OTHER_START,
     OWNER_B,
     PUSH,
     REACH,
-    STEP,
     SUDDEN,
     TRAVEL,
     WHERE,
     WHOLE_ONLY,
     WHOLE_STEP,
 )
+from sim.kernels.lengths import LONGEST_PART
 from sim.kernels.owners import home, unite
 from sim.kernels.rows import own_velocity
 from sim.memory import call_notice, floats, kernel
@@ -154,7 +155,7 @@ def look(head):  # type: ignore[no-untyped-def]
         if t[at.NEAR] > 0:
             settings = views.settings(t)
             fastest, least = speeds(t)
-            way = settings[STEP] * fastest
+            way = settings[NEXT_MOVE] * fastest
             settings[TRAVEL] += way
             if settings[TRAVEL] > settings[MARGIN] or settings[MARGIN] == 0.0:
                 settings[MARGIN], settings[TRAVEL] = max(_AHEAD * way, _LEAST * least), way

@@ -33,6 +33,7 @@ from sim.kernels.layout import (
     LEDGER_NUMERICAL,
     LEDGER_VISCOUS,
     MOVE,
+    NEXT_MOVE,
     OTHER_START,
     RETURN,
     STEP,
@@ -95,10 +96,10 @@ def begin_part(head, others, pushes):  # type: ignore[no-untyped-def]
                 touch[OTHER_START + row] = other_velocity(c, place, touch, row)
             keep = min(slop, max(kept(place, touch, settings[WHOLE_STEP]), _PRESSED * slop))
             slowly = max(min(touch[GAP] + keep, keep), 0.0) / (SETTLE * settings[WHOLE_STEP])
-            closing = max(touch[GAP], 0.0) / settings[STEP] + slowly
+            closing = max(touch[GAP], 0.0) / settings[NEXT_MOVE] + slowly
             if touch[RETURN] > 0.0 and touch[GAP] > 0.0:
                 meeting = -relative(place, touch, 0)
-                touch[BOUNCE] = touch[RETURN] * meeting if meeting * settings[STEP] > touch[GAP] else 0.0
+                touch[BOUNCE] = touch[RETURN] * meeting if meeting * settings[NEXT_MOVE] > touch[GAP] else 0.0
             touch[WANTED] = touch[BOUNCE] if touch[BOUNCE] > 0.0 else -closing
             touch[BOUNCE] = 0.0
         c = t[at.NEXT]
@@ -110,14 +111,18 @@ def begin_part(head, others, pushes):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
-    """Take over what a part has found, and go on to where the bodies are at its end; returns its `loss`."""
+def end_part(head, others, before, pushes, move_on, step):  # type: ignore[no-untyped-def]
+    """Take over what a part has found, and go on to where the bodies are at its end; returns its `loss`.
+
+    In the next part forces are to act for a ``step``, and a move of ``move_on`` is to end it.
+    """
     c = head
     while c != 0:
         t = views.control(c)
         write(t)
         c = t[at.NEXT]
-    h = views.settings(views.control(head))[STEP]
+    settings = views.settings(views.control(head))
+    h, ratio = settings[NEXT_MOVE], step / settings[STEP]
     lost = loss(head, others, before, pushes)
     c = head
     while c != 0:
@@ -148,15 +153,26 @@ def end_part(head, others, before, pushes):  # type: ignore[no-untyped-def]
             for axis in range(3):
                 start[i, axis] = last[i, axis]
         clear(views.per_body(t, at.CONTACT_IMPULSE))
-        views.settings(t)[STEP_RATIO], views.settings(t)[MOVE] = 1.0, h
+        settings = views.settings(t)
+        take_up(t, ratio, settings[STEP])
+        settings[STEP], settings[STEP_RATIO], settings[MOVE], settings[NEXT_MOVE] = step, move_on / h, h, move_on
+        scale_all(views.per_body(t, at.EXTERNAL), ratio)
         if t[at.SHIFTED] == 1:
             clear(views.shift(t))
             t[at.SHIFTED] = 0
-        take_up(t, 1.0, h)
         renew(t)
         prepare_step(t, views.settings(t)[BETA] != 0.0)
         c = t[at.NEXT]
+    scale_all(pushes, ratio)
     return lost
+
+
+@kernel
+def scale_all(array, factor):  # type: ignore[no-untyped-def]
+    """Multiply all of a two-dimensional array."""
+    for i in range(array.shape[0]):
+        for k in range(array.shape[1]):
+            array[i, k] *= factor
 
 
 @kernel

@@ -1,7 +1,7 @@
 """A step taken in parts, inside the one step that Chipmunk takes.
 
 When it comes to the structures, Chipmunk has moved all bodies and found the contacts. Of the step's n parts, all but
-the last are taken at once then, each a step of its own: forces from outside act with an n-th of their impulse, joints
+the last are taken at once then, each a step of its own: forces from outside act with their share of the impulse, joints
 and contacts are solved, laws and ledger take over what was found, and the structures' bodies are moved, together with
 the loose ones that touch them. The last part is what Chipmunk's iterations then work on. In the end the bodies are put
 back, and a pseudo-velocity makes Chipmunk's next move, which is one of a whole step, end where the last part does.
@@ -13,8 +13,6 @@ followed, and a contact may close it in a part of length h but not pass it, v_n 
 
 A blow is noticed late, and all go back to when they touched (`late.py`); the parts are those of what is left then, too.
 """
-
-import math
 
 import numpy as np
 
@@ -31,7 +29,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.blow import LONGEST_PART, OVER, forget, grow_older, is_over
+from sim.kernels.blow import OVER, forget, grow_older, is_over
 from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
 from sim.kernels.guard import choose_scheme
 from sim.kernels.kinematics import prepare
@@ -43,6 +41,7 @@ from sim.kernels.layout import (
     EARLIER,
     LOOSE_AT,
     MOVE,
+    NEXT_MOVE,
     PUSH,
     STEP,
     STEP_RATIO,
@@ -51,6 +50,7 @@ from sim.kernels.layout import (
     WHERE,
     WHOLE_STEP,
 )
+from sim.kernels.lengths import part_lengths
 from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_links
 from sim.kernels.moves import keep_moment
 from sim.kernels.near import fall_behind, hand_over, let_go, look, stand_in
@@ -64,13 +64,13 @@ from sim.kernels.others import (
     struck_besides,
     which,
 )
-from sim.kernels.part import begin_part, end_part, renew
+from sim.kernels.part import begin_part, end_part, renew, scale_all
 from sim.kernels.settle import finite, settle_bounces
 from sim.memory import clear, floats, kernel
 
 
 @kernel
-def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
+def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
     """Take all parts of a step but the last one, and begin that; whether all of them converged."""
     others = others_of(head)
     free = np.empty((len(others), 3))
@@ -81,16 +81,20 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
     begun = np.empty((len(others), 3))
     load_positions(others, begun)
     late = lateness(head)
-    parts = max(parts, math.ceil((views.settings(views.control(head))[STEP] + late) / LONGEST_PART - 1e-6))
     go_back(head, others, pushes, late)
-    scale_all(pushes, open_step(head, late, parts))
+    leader = views.control(head)
+    settings = views.settings(leader)
+    whole, span = settings[WHOLE_STEP], settings[WHOLE_STEP] + late
+    moves, steps = part_lengths(settings, span)
+    open_step(head, late, moves, steps)
+    scale_all(pushes, steps[0] / whole)
     stand_in(head)
     # What another body gave comes once, whatever the length of the parts, so that no momentum is lost.
-    add_all(pushes, struck, 1.0 / parts)
-    links = links_of(others, views.stock(views.control(head)))
+    add_all(pushes, struck, steps[0] / span)
+    links = links_of(others, views.stock(leader))
     before, lost, converged = np.empty((len(others), 3)), 0.0, True
-    h = views.settings(views.control(head))[STEP]
-    for _ in range(parts - 1):
+    for i in range(len(moves) - 1):
+        h = moves[i]
         look(head)
         load_velocities(others, before)
         begin_part(head, others, pushes)
@@ -101,7 +105,7 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
             c = views.control(c)[at.NEXT]
         converged = settle_bounces(head, fresh, touching) and converged
         for _ in range(MOST_TURNS if len(links) > 0 else 0):
-            if pull_links(links, h) <= AGREED:
+            if pull_links(links, steps[i]) <= AGREED:
                 break
             converged = settle_bounces(head, not touching, touching) and converged
         c = head
@@ -109,45 +113,40 @@ def take_parts(head, parts, fresh, touching):  # type: ignore[no-untyped-def]
             t = views.control(c)
             if t[at.FAULT] >= 0 or not finite(t):
                 let_go(head, others, pushes, begun, free)
-                return_linked(head, others, begun, views.settings(t)[WHOLE_STEP])
+                return_linked(head, others, begun, whole)
                 return converged
             c = t[at.NEXT]
-        lost += end_part(head, others, before, pushes)
+        # In a whole step it would be so many times as much.
+        lost += whole / h * end_part(head, others, before, pushes, moves[i + 1], steps[i + 1])
         grow_older(head, 0.0, h)
-    settings = views.settings(views.control(head))
-    worth = OVER * settings[WHOLE_STEP] * settings[BLOW]
-    if parts * lost < worth or is_over(head):
+    if lost < OVER * whole * settings[BLOW] or is_over(head):
         forget(head)
     look(head)
     let_go(head, others, pushes, begun, free)
     begin_part(head, others, pushes)
-    prepare_links(links, h)
-    return_linked(head, others, begun, settings[WHOLE_STEP])
+    prepare_links(links, moves[-1])
+    return_linked(head, others, begun, whole)
     c = head
     while c != 0:
-        views.control(c)[at.PUSHED_APART] = 0
+        views.control(c)[at.PARTS], views.control(c)[at.PUSHED_APART] = len(moves), 0
         c = views.control(c)[at.NEXT]
     return converged
 
 
 @kernel
-def open_step(head, late, parts):  # type: ignore[no-untyped-def]
-    """Make steps of the parts, over what remains of the last step, too; nothing has been applied yet.
-
-    Returns the share of a part in a step.
-    """
-    share, c = 1.0, head
+def open_step(head, late, moves, steps):  # type: ignore[no-untyped-def]
+    """Make a step of the first part, over what remains of the last step, too; nothing has been applied yet."""
+    c = head
     while c != 0:
         t = views.control(c)
         settings, touches = views.settings(t), views.touches(t)
-        h, old = settings[STEP], settings[STEP] / settings[STEP_RATIO]
-        share = (h + late) / (h * parts)
-        settings[STEP] = share * h
-        settings[STEP_RATIO] = share * h / max(old - late, share * h)
-        settings[MOVE] = max(settings[MOVE] - late, share * h)
-        t[at.PARTS], t[at.AHEAD], t[at.PUSHED_APART] = parts, 1, 1
-        scale_all(views.per_joint(t, at.IMPULSE), share)
-        scale_all(views.per_body(t, at.EXTERNAL), share)
+        ratio = steps[0] / settings[STEP]
+        settings[STEP], settings[NEXT_MOVE] = steps[0], moves[0]
+        settings[STEP_RATIO] *= moves[0] / settings[WHOLE_STEP]
+        settings[MOVE] = max(settings[MOVE] - late, min(settings[MOVE], moves[-1]))
+        t[at.AHEAD], t[at.PUSHED_APART] = 1, 1
+        scale_all(views.per_joint(t, at.IMPULSE), ratio)
+        scale_all(views.per_body(t, at.EXTERNAL), ratio)
         clear(views.per_body(t, at.CONTACT_IMPULSE))
         for k in range(t[at.CONTACTS]):
             touches[k, CACHED], touches[k, CACHED + 1] = 0.0, 0.0
@@ -158,7 +157,6 @@ def open_step(head, late, parts):  # type: ignore[no-untyped-def]
         renew(t)
         prepare(t)
         c = t[at.NEXT]
-    return share
 
 
 @kernel
@@ -176,14 +174,6 @@ def begin_scheme(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def scale_all(array, factor):  # type: ignore[no-untyped-def]
-    """Multiply all of a two-dimensional array."""
-    for i in range(array.shape[0]):
-        for k in range(array.shape[1]):
-            array[i, k] *= factor
-
-
-@kernel
 def add_all(array, other, factor):  # type: ignore[no-untyped-def]
     """Add a multiple of one two-dimensional array to another."""
     for i in range(array.shape[0]):
@@ -197,7 +187,7 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
 
     Chipmunk's next move goes from there, with the velocities of the last part and a pseudo-velocity beside them.
     """
-    h, whole = views.settings(t)[STEP], views.settings(t)[WHOLE_STEP]
+    h, whole = views.settings(t)[NEXT_MOVE], views.settings(t)[WHOLE_STEP]
     if t[at.AHEAD] == 1:
         others, c = others_of(head), head
         while c != 0:

@@ -21,9 +21,9 @@ from sim.memory import call_law, floats, kernel
 
 @kernel
 def reach_of(t):  # type: ignore[no-untyped-def]
-    """How far q* follows the new velocities: (β + δ) h [s]."""
+    """How far q* follows the new velocities: (β + δ) h, with h for how long they are to move the bodies [s]."""
     settings = views.settings(t)
-    return settings[STEP] * (settings[at.BETA] + settings[at.DELTA])
+    return settings[at.NEXT_MOVE] * (settings[at.BETA] + settings[at.DELTA])
 
 
 @kernel

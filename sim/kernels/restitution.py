@@ -15,12 +15,26 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.kinematics import rates
-from sim.kernels.layout import BETA, CACHED, OTHER_START, OWNER_A, OWNER_B, STEP, TANGENT, WANTED, WHERE, WHOLE_RATIO
+from sim.kernels.layout import (
+    BETA,
+    CACHED,
+    NEXT_MOVE,
+    OTHER_START,
+    OWNER_A,
+    OWNER_B,
+    STEP,
+    TANGENT,
+    WANTED,
+    WHERE,
+    WHOLE_RATIO,
+)
 from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, kernel
 
 #: Times that a bounce is halved before none is asked for.
 MOST_HALVINGS = 6
+# A bounce off what does not give spends all that it takes.
+_ROUNDING = 1e-12
 
 
 @kernel
@@ -63,7 +77,7 @@ def creates_energy(head):  # type: ignore[no-untyped-def]
                     relative += own_velocity(other, place, touch, row, others)
                 work += impulse * relative
         c = t[at.NEXT]
-    return work > spent
+    return work > (1.0 + _ROUNDING) * spent
 
 
 @kernel
@@ -71,16 +85,17 @@ def spent_by(t):  # type: ignore[no-untyped-def]
     """What implicit Euler dissipates in a structure's bodies, and in its joints as they yield now [J]."""
     body_at, joint_bodies, gradient = views.body_at(t), views.joint_bodies(t), views.gradient(t)
     start, velocity = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.VELOCITY)
-    response, h, total = views.response(t), views.settings(t)[STEP], 0.0
+    response, settings, total = views.response(t), views.settings(t), 0.0
     for i in range(t[at.MOVING]):
         b = floats(body_at[i], BODY_WORDS)
         x, y, w = velocity[i, 0] - start[i, 0], velocity[i, 1] - start[i, 1], velocity[i, 2] - start[i, 2]
         total += mass_of(b) * (x * x + y * y) + moment_of(b) * w * w
+    factor = settings[STEP] * settings[NEXT_MOVE]
     for k in range(t[at.JOINTS]):
         u, v, w = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
-        d, u, v, w = response[k], h * u, h * v, h * w
-        total += d[TANGENT] * u * u + d[TANGENT + 3] * v * v + d[TANGENT + 5] * w * w
-        total += 2.0 * (d[TANGENT + 1] * u * v + d[TANGENT + 2] * u * w + d[TANGENT + 4] * v * w)
+        d = response[k]
+        total += factor * (d[TANGENT] * u * u + d[TANGENT + 3] * v * v + d[TANGENT + 5] * w * w)
+        total += factor * 2.0 * (d[TANGENT + 1] * u * v + d[TANGENT + 2] * u * w + d[TANGENT + 4] * v * w)
     return 0.5 * total
 
 

@@ -5,7 +5,7 @@ import math
 from sim.chipmunk import CONSTRAINT_SPACE, CONSTRAINT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.blow import count_parts
+from sim.kernels.blow import takes_parts
 from sim.kernels.bodies import arrive, depart, take_in, write
 from sim.kernels.contacts import collect, hand_back
 from sim.kernels.guard import choose_scheme
@@ -35,11 +35,11 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     note_start(t)
     for i in range(BEFORE):
         settings[BEFORE + i] = settings[i]
-    last_step = settings[at.STEP]
-    moved = h - settings[at.WHOLE_STEP] + last_step if t[at.PARTS] > 1 else h
+    last_step, last_move = settings[at.STEP], settings[at.NEXT_MOVE]
+    moved = h - settings[at.WHOLE_STEP] + last_move if t[at.PARTS] > 1 else h
     ratio = h / last_step if last_step > 0.0 else 0.0
-    settings[at.STEP] = h
-    settings[at.STEP_RATIO] = ratio if ratio > 0.0 else 1.0
+    settings[at.STEP], settings[at.NEXT_MOVE] = h, h
+    settings[at.STEP_RATIO] = h / last_move if last_move > 0.0 else 1.0
     if t[at.PARTS] > 1 and h != settings[at.WHOLE_STEP] and h > 0.0:
         even_out(t, h, settings[at.WHOLE_STEP])
     settings[at.WHOLE_RATIO] = h / settings[at.WHOLE_STEP] if settings[at.WHOLE_STEP] > 0.0 else 1.0
@@ -56,7 +56,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
             call_notice(t[at.NOTICE], t[at.KEY])
     choose_scheme(t, spin)
     take_up(t, ratio, last_step)
-    carry(t, h, last_step, moved, touching)
+    carry(t, h, last_move, moved, touching)
     add_inertia(t)
     prepare_step(t, settings[BEFORE + at.BETA] != 0.0)
     settings[at.SUDDEN] = sudden_energy(t, last_step)
@@ -114,11 +114,10 @@ def solve(c):  # type: ignore[no-untyped-def]
     if fresh:
         if touching:
             book_cached(c)
-        parts = count_parts(c)
-        if parts > 1:
+        if takes_parts(c):
             touching = let_come(c) or touching
-            keep(c, parts)
-            converged = take_parts(c, parts, fresh, touching)
+            keep(c)
+            converged = take_parts(c, fresh, touching)
         member = c
         while member != 0:
             t = views.control(member)

@@ -1,0 +1,96 @@
+"""How long the parts of a step are while a blow lasts, and for how long forces act in each.
+
+Implicit Euler damps what a part does not resolve. Where something strikes, short waves run first, and long ones are
+left of them: parts begin short, and are a share of the blow's age from then on. A force from outside is known for a
+step only, and does not come any faster; a joint that is as good as rigid is not to ring from it. What it sets going is
+taken in the longest parts, all alike.
+
+Velocities belong to the middle of the moves that they make (see `energy`). From a move of h₀ to one of h₁ it is
+½ (h₀ + h₁), and for so long the forces of the part act that ends with the latter,
+
+    λ = -½ (h₀ + h₁) s(q + h₁ J V).
+
+With h₁ instead, what speeds up while parts grow would gain energy, ½ (h₁ - h₀) times the power that speeds it up. So
+that these times sum up to the step's, its last part is as long as the move before its first: the shortest.
+
+Where bodies turn by φ in a move, they end by a share of φ² from where joints would have them, and the next part puts
+that right within its length. After whole steps in which they turn much, parts begin longer. The average-acceleration
+rule, which damps nothing, keeps its energy where all parts are alike.
+"""
+
+import math
+
+import numpy as np
+
+from sim.kernels import layout as at
+from sim.kernels import views
+from sim.kernels.layout import BETA, BLOW_AGE, MOVE, SHORTEST, UNDAMPED
+from sim.memory import kernel
+
+# Lengths of parts [s], and of the blow's age.
+_LEAST, LONGEST_PART, _OF_AGE = 0.05e-3, 0.5e-3, 0.05
+# After a move in which bodies turned by this angle, all parts are of the longest [rad].
+_TURN = 0.1
+_ROUNDING = 1e-6
+
+
+@kernel
+def note_shortest(head, struck):  # type: ignore[no-untyped-def]
+    """Note how long the shortest part of a group's steps is to be from now on; whether it was ``struck``."""
+    shortest, c = _LEAST if struck else LONGEST_PART, head
+    while c != 0:
+        t = views.control(c)
+        start, settings = views.per_body(t, at.START_VELOCITY), views.settings(t)
+        for i in range(t[at.MOVING]):
+            turn = start[i, 2] * settings[MOVE]
+            shortest = max(shortest, min((turn / _TURN) ** 2, 1.0) * LONGEST_PART)
+        if settings[BETA] != 0.0:
+            shortest = LONGEST_PART
+        c = t[at.NEXT]
+    c = head
+    while c != 0:
+        t = views.control(c)
+        settings = views.settings(t)
+        settings[SHORTEST] = shortest
+        if struck:
+            settings[UNDAMPED] = 0.0
+        c = t[at.NEXT]
+
+
+@kernel
+def shortest_of(settings):  # type: ignore[no-untyped-def]
+    """How long the first and the last part of a step are [s]; what joins a group during a blow has noted nothing."""
+    return max(settings[SHORTEST], _LEAST)
+
+
+@kernel
+def longest(settings, age):  # type: ignore[no-untyped-def]
+    """How long a part may be when the blow is of this ``age`` [s]."""
+    return max(min(_OF_AGE * age, LONGEST_PART), shortest_of(settings))
+
+
+@kernel
+def part_lengths(settings, span):  # type: ignore[no-untyped-def]
+    """Lengths of the moves that end the parts of a ``span`` of time, and for how long forces act in each [s]."""
+    last = shortest_of(settings)
+    if last >= LONGEST_PART:
+        count = math.ceil(span / last - _ROUNDING)
+        return np.full(count, span / count), np.full(count, span / count)
+    rest, reached, count = span - last, 0.0, 0
+    moves = np.empty(math.ceil(span / last) + 1)
+    while reached < rest:
+        moves[count] = longest(settings, settings[BLOW_AGE] + reached)
+        reached += moves[count]
+        count += 1
+    # What they go too far by is taken from what they are longer than the shortest; if they are not, from their number.
+    more = reached - count * last
+    if rest > count * last:
+        moves[:count] = last + (moves[:count] - last) * ((rest - count * last) / more)
+    else:
+        count = max(int(rest / last + _ROUNDING), 1)
+        moves[:count] = rest / count
+    moves[count] = last
+    moves, steps = moves[: count + 1], np.empty(count + 1)
+    for i in range(count + 1):
+        steps[i] = 0.5 * (moves[i - 1] + moves[i])
+    return moves, steps

@@ -13,12 +13,13 @@ energy that there is, the step is taken by implicit Euler.
 
 Implicit Euler finds deformations at the end of a move instead, ½ h J V further on, so the step after one of its own is
 averaged again where that is little: not while anything in it moves faster than the steps resolve. A structure that
-moved before there were joints begins with a step of implicit Euler, too.
+moved before there were joints begins with a step of implicit Euler, too. In the default scheme, which averages only in
+parts after what came suddenly, the parts that follow are of implicit Euler from then on.
 """
 
 from sim.kernels import views
 from sim.kernels.kinematics import prepare
-from sim.kernels.layout import BETA, DELTA, LEDGER_ELASTIC, LEDGER_KINETIC, ROUNDING, WANTED_BETA
+from sim.kernels.layout import BETA, DELTA, LEDGER_ELASTIC, LEDGER_KINETIC, ROUNDING, UNDAMPED
 from sim.memory import kernel
 
 # Of a structure's energy: after a step of the average-acceleration rule, and of implicit Euler.
@@ -35,6 +36,6 @@ def prepare_step(t, averaged):  # type: ignore[no-untyped-def]
     share = _STRAYED if averaged else _BETWEEN
     strayed = prepare(t) > share * (ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC]) + settings[ROUNDING]
     # Parts of the default scheme's steps are short enough.
-    if strayed and settings[WANTED_BETA] != 0.0:
-        settings[BETA], settings[DELTA] = 0.0, 1.0
+    if strayed:
+        settings[BETA], settings[DELTA], settings[UNDAMPED] = 0.0, 1.0, 0.0
         prepare(t)

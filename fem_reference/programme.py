@@ -15,6 +15,8 @@ _UNLOADING_STEPS = 20
 #: Steps beyond a load that is not borne, each this share of the displacement there; a load that has fallen by more than
 #: that share of itself has passed a limit point.
 _PROBES, _PROBE, _FALLEN = 10, 0.01, 1e-6
+# By so much of itself the displacement goes on where the load finds no way; a load is met to about that share.
+_NUDGE = 1e-4
 
 
 def trace(
@@ -79,11 +81,26 @@ def _follow_legs(
         state.slope = None
         for target in leg:
             if push.control == "load":
-                state.load_to(float(target))
+                _raise_load(state, float(target))
             else:
                 state.move_to(start + float(target))
             state.record(points, start)
             watch((len(points.load) - 1) / total)
+
+
+def _raise_load(state: State, target: float) -> None:
+    """Step to a load, past kinks of the path at which no step of the load finds equilibrium, by the displacement."""
+    while True:
+        try:
+            state.load_to(target)
+            return
+        except NotConverged:
+            load, state.slope = state.load, None
+            state.move_to(state.position + _NUDGE * state.position)
+            if abs(state.load) >= abs(target):
+                return
+            if abs(state.load) <= abs(load) * (1.0 + _FALLEN):
+                raise
 
 
 def _what_ends(state: State) -> str:

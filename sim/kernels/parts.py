@@ -211,7 +211,7 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
         # What the next step is to find where it was: at the place from which plain velocities would have led there.
         body_at, begun, position = views.body_at(t), views.per_body(t, at.BEGUN_AT), views.per_body(t, at.LAST_POSITION)
         if t[at.FREE] == 1:
-            keep_moment(t, begun, whole)
+            keep_moment(t, begun)
         for i in range(t[at.MOVING]):
             b = floats(body_at[i], BODY_WORDS)
             put_back(body_at[i], begun[i], h, whole)

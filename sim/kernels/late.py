@@ -29,7 +29,8 @@ def lateness(head):  # type: ignore[no-untyped-def]
             here = t[at.AFTER_PARTS] == 1 and touches[k, GAP] >= -space_slop(t)
             if touches[k, STRIKE] > 0.0 and not here:
                 late = max(late, -touches[k, GAP] / touches[k, STRIKE])
-        late = min(late, settings[MOVE])
+        # A step that is shorter than the last one may have moved bodies back.
+        late = min(late, max(settings[MOVE], 0.0))
         c = t[at.NEXT]
     return late
 

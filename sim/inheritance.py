@@ -54,6 +54,8 @@ def succeed(
         if joint.structure is new:
             tables.state(joint.index)[:] = heir.state
             tables[at.RESULT][joint.index] = heir.result
+            # Where the next step is to find it, or the average-acceleration rule is not used; see `resolved`.
+            tables[at.DEFORMATION][joint.index] = heir.result[:3]
     tables[at.SETTINGS][:] = before[at.SETTINGS]
     tables[at.SETTINGS][[at.STEP, at.NEXT_MOVE]] = before[at.SETTINGS][at.WHOLE_STEP]
     for count in (at.NEWTON_STEPS, at.UNCONVERGED):

@@ -135,6 +135,7 @@ class Structure(Readings):
                 before, k = joint.structure.tables, joint.index
                 self._result[i] = before[at.RESULT][k]
                 self.tables[at.ACTIVE][i] = before[at.ACTIVE][k]
+                self.tables[at.DEFORMATION][i] = before[at.DEFORMATION][k]
                 self.tables.state(i)[:] = before.state(k)
             self._adopt(i)
         ledger = self.tables[at.LEDGER]

@@ -78,7 +78,7 @@ def kinetic(body: pymunk.Body) -> float:
 
 
 def test_a_refined_structure_swings_on_with_its_energy() -> None:
-    """What comes and goes with the swinging is below a thousandth of it, and no more than without refinement."""
+    """What comes and goes with the swinging, and what refining adds, is below a ten-thousandth of it."""
     assembly = moving(
         portal("clamped", "pinned"), Model("lobatto", 7, "elastic-plastic", scheme=SCHEMES[0], refine_at=math.inf), 25
     )
@@ -87,7 +87,7 @@ def test_a_refined_structure_swings_on_with_its_energy() -> None:
     for _ in range(500):
         assembly.step(STEP)
         now = assembly.structure.energy
-        assert now.kinetic + now.elastic == pytest.approx(energy.kinetic + energy.elastic, rel=1e-3)
+        assert now.kinetic + now.elastic == pytest.approx(energy.kinetic + energy.elastic, rel=1e-4)
     assert assembly.structure.unconverged == 0
 
 

@@ -57,23 +57,11 @@ class Twin:
             jacobian[k, 0] -= 2.0 * self.arc[k] * q[k, 2] * jacobian[k, 2]
         return q, jacobian.reshape(3 * n, 3 * bodies)
 
-    def bend(self, time: float = 1e-3) -> np.ndarray:
-        """Second derivative in time of the deformations as the bodies move on straight, (n, 3)."""
-        here, places = self.position, []
-        for t in (-time, 0.0, time):
-            self.position = here + t * self.last
-            places.append(self.kinematics()[0])
-        self.position = here
-        before, now, after = places
-        return (before - 2.0 * now + after) / time**2
-
     def step(self, h: float, push: np.ndarray) -> None:
         """One step of Chipmunk's order: move, find q and J, add the forces' ``push`` (b, 3), solve."""
         self.position = self.position + h * self.last
         q, jacobian = self.kinematics()
         old, reach = self.last.ravel(), h * (self.beta + self.delta)
-        # Half a move ago, to second order.
-        q = q + 2.0 * (self.beta * h) ** 2 * self.bend()
         k, cap, inverse = self.stiffness.ravel(), self.cap.ravel(), 1.0 / self.mass.ravel()
         free = self.velocity.ravel() + h * inverse * push.ravel()
         v, impulse = free.copy(), np.zeros(k.size)

@@ -124,7 +124,9 @@ UNDAMPED = 26
 NEXT_MOVE = 27
 # Shortest part of a step while a blow lasts, see `lengths`.
 SHORTEST = 28
-_NUMBERS = 29
+# Whether steps, or parts of them, have been of more than one length, see `kinematics.prepare`.
+UNEVEN = 29
+_NUMBERS = 30
 # All of them again, as they were before the step.
 BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 

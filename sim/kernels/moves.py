@@ -20,7 +20,7 @@ from sim.kernels import views
 from sim.kernels.bodies import move
 from sim.kernels.guard import relative_velocity, rigid_motion
 from sim.kernels.inertia import mass_of
-from sim.kernels.layout import BETA, MOVE
+from sim.kernels.layout import BETA, MOVE, UNEVEN
 from sim.memory import clear, floats, kernel
 
 # Over the step: what is rounding.
@@ -35,6 +35,8 @@ def carry(t, h, last_move, moved, touching):  # type: ignore[no-untyped-def]
         clear(views.per_body(t, at.CARRIED))
         t[at.CARRYING] = 0
     settings[MOVE] = moved
+    if last_move > 0.0 and abs(h - last_move) > _SAME * h:
+        settings[UNEVEN] = 1.0
     implicit = settings[BETA] == 0.0
     rest = (last_move if implicit else 0.5 * (last_move + h)) - moved
     if last_move == 0.0 or abs(rest) <= _SAME * h or touching or t[at.CONTACTS] != 0:

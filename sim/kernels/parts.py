@@ -46,6 +46,7 @@ from sim.kernels.layout import (
     STEP,
     STEP_RATIO,
     STRIKE,
+    UNEVEN,
     WANTED_BETA,
     WHERE,
     WHOLE_STEP,
@@ -144,6 +145,7 @@ def open_step(head, late, moves, steps):  # type: ignore[no-untyped-def]
         settings[STEP], settings[NEXT_MOVE] = steps[0], moves[0]
         settings[STEP_RATIO] *= moves[0] / settings[WHOLE_STEP]
         settings[MOVE] = max(settings[MOVE] - late, min(settings[MOVE], moves[-1]))
+        settings[UNEVEN] = 1.0
         t[at.AHEAD], t[at.PUSHED_APART] = 1, 1
         scale_all(views.per_joint(t, at.IMPULSE), ratio)
         scale_all(views.per_body(t, at.EXTERNAL), ratio)

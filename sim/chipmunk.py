@@ -289,6 +289,11 @@ def wake_all(space: object) -> None:
         lib.cpBodyActivate(ffi.cast("cpBody *", int(words(int(roots[LIST_ITEMS]), 1, np.int64)[0])))
 
 
+def constraints_on(body: pymunk.Body) -> list[pymunk.Constraint]:
+    """Constraints that hold a body; pymunk goes on to count those that have left the space, as joints that broke."""
+    return [c for c in body.constraints if words(address(c._constraint), CONSTRAINT_WORDS, np.int64)[CONSTRAINT_SPACE]]
+
+
 def cached_impulse(constraint: pymunk.Constraint) -> np.ndarray:
     """Impulse of one of Chipmunk's own constraints in the last step, to be changed in place; springs keep none."""
     first, count = CACHED_IMPULSE.get(type(constraint), (0, 0))

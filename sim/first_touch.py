@@ -17,7 +17,7 @@ import pymunk
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from sim.chipmunk import next_move, overlap
+from sim.chipmunk import constraints_on, next_move, overlap
 
 _MOST_ADVANCES = 60
 
@@ -82,7 +82,7 @@ def stop_at_first_touch(space: pymunk.Space, dt: float) -> list[Touch]:
     fast = [
         body
         for body in space.bodies
-        if body.body_type == pymunk.Body.DYNAMIC and not body.constraints and not body.is_sleeping
+        if body.body_type == pymunk.Body.DYNAMIC and not body.is_sleeping and not constraints_on(body)
         if any(abs(next_move(body)[0]) * dt > 0.5 * _width(shape) for shape in body.shapes)
     ]
     touches = first_touches(space, fast, dt)
@@ -111,7 +111,7 @@ def hold_back(touch: Touch, dt: float) -> None:
 
 def pass_each_other(a: pymunk.Body, b: pymunk.Body) -> bool:
     """Whether a joint keeps the two from colliding."""
-    return any(not joint.collide_bodies and b in (joint.a, joint.b) for joint in a.constraints)
+    return any(not joint.collide_bodies and b in (joint.a, joint.b) for joint in constraints_on(a))
 
 
 class _Way:

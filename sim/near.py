@@ -197,9 +197,9 @@ def _is_free(body: pymunk.Body | None, touching: np.ndarray) -> bool:
     """
     if body is None or body.is_sleeping:
         return False
-    if body.body_type != pymunk.Body.DYNAMIC or not body.constraints:
+    if body.body_type != pymunk.Body.DYNAMIC or not (constraints := chipmunk.constraints_on(body)):
         return True
-    for joint in body.constraints:
+    for joint in constraints:
         if isinstance(joint, DuctileJoint) and joint.structure is not None:
             control = joint.structure.tables.control
             # That one has listed this one's shapes among its own already, if it was first.

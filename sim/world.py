@@ -9,6 +9,7 @@ import pymunk
 
 from capacity import InputError
 from scene import Scene, Simulation, is_supported
+from sim.chipmunk import constraints_on
 from sim.contact_watch import ContactWatch, is_touching
 from sim.direct_joints import add_joints
 from sim.first_touch import first_touches, hold_back
@@ -239,7 +240,7 @@ class World:
 
     def _loose(self) -> list[pymunk.Body]:
         """Continuous bodies that nothing is joined to."""
-        return [body for body in self._continuous if not body.constraints]
+        return [body for body in self._continuous if not constraints_on(body)]
 
     def _parts(self) -> int:
         """Into how many parts the next step is cut, never fewer than before: a power of two for what travels fast.

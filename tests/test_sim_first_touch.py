@@ -109,3 +109,19 @@ def test_slow_bodies_and_those_on_constraints_are_not_stopped() -> None:
     assert stop_at_first_touch(space, 1 / 60) == []
     assert slow.position == (0.0, 0.1)
     assert held.position == (0.5, 0.2)
+
+
+def test_what_broke_off_is_stopped_by_what_it_was_joined_to() -> None:
+    """pymunk's bodies go on to list the joints that have left the space, some of which kept the two from colliding."""
+    space = pymunk.Space()
+    space.add(pymunk.Segment(space.static_body, (-1.0, 0.0), (1.0, 0.0), 0.01))
+    ball = pymunk.Body(1.0, 1.0)
+    ball.position, ball.velocity = (0.0, 0.3), (0.0, -40.0)
+    space.add(ball, pymunk.Circle(ball, 0.05))
+    joint = pymunk.PinJoint(ball, space.static_body, (0.0, 0.0), (0.0, 1.0))
+    joint.collide_bodies = False
+    space.add(joint)
+    assert first_touches(space, [ball], 1 / 60) == []
+    space.remove(joint)
+    (touch,) = stop_at_first_touch(space, 1 / 60)
+    assert touch.time == pytest.approx(0.24 / 40.0, abs=space.collision_slop / 40.0)

@@ -71,8 +71,8 @@ def keep_moment(t, places):  # type: ignore[no-untyped-def]
     """Have a free structure's bodies the same angular momentum at ``places`` as where they are, with their velocities.
 
     Places are shifted for it, each across its body's velocity u relative to the centre of mass, by λ |u|; that keeps
-    the centre where it is. With D how far bodies are from their ``places``, λ = Σ m D×u / Σ m u²; by Cauchy's inequality
-    the shifts are no more than D, in the root of the mean square weighed by mass.
+    the centre where it is. With D how far bodies are from their ``places``, λ = Σ m D×u / Σ m u²; by Cauchy's
+    inequality the shifts are no more than D, in the root of the mean square weighed by mass.
     """
     body_at, moving, velocity = views.body_at(t), t[at.MOVING], views.per_body(t, at.LAST_VELOCITY)
     _, _, vx, vy, _ = rigid_motion(t, velocity)

@@ -35,7 +35,6 @@ def prepare_step(t, averaged):  # type: ignore[no-untyped-def]
     settings, ledger = views.settings(t), views.ledger(t)
     share = _STRAYED if averaged else _BETWEEN
     strayed = prepare(t) > share * (ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC]) + settings[ROUNDING]
-    # Parts of the default scheme's steps are short enough.
     if strayed:
         settings[BETA], settings[DELTA], settings[UNDAMPED] = 0.0, 1.0, 0.0
         prepare(t)

@@ -29,6 +29,8 @@ class Touch:
     Attributes
     ----------
     body : pymunk.Body
+    other : pymunk.Body
+        What it touches.
     time : float
         [s]
     closing : (float, float)
@@ -36,6 +38,7 @@ class Touch:
     """
 
     body: pymunk.Body
+    other: pymunk.Body
     time: float
     closing: tuple[float, float]
 
@@ -44,16 +47,17 @@ def first_touches(space: pymunk.Space, bodies: Iterable[pymunk.Body], dt: float)
     """Those of ``bodies`` that come to touch something within their next move of ``dt`` [s], and when.
 
     Contacts that are there already do not count; nor does the motion of what is not among ``bodies`` and comes from
-    outside of their way.
+    outside of their way. Of two that touch each other, the first alone is told, who is to give way to the other.
     """
-    touches = []
+    touches: list[Touch] = []
     for body in bodies:
         ways = [_Way(own) for own in body.shapes]
+        waiting = {touch.body for touch in touches if touch.other is body}
         found = [
             touch
             for way in ways
             for other in space.bb_query(way.box(dt), way.shape.filter)
-            if other.body is not body and other.body is not None and not pass_each_other(body, other.body)
+            if other.body is not None and other.body not in {body, *waiting} and not pass_each_other(body, other.body)
             for touch in (_first_touch(way, _Way(other), dt, space.collision_slop),)
             if touch is not None
         ]
@@ -173,8 +177,9 @@ def _first_touch(own: _Way, other: _Way, dt: float, slop: float) -> Touch | None
     """When the two shapes first touch, in a move of ``dt``; a little later, so that Chipmunk sees it."""
     if overlap(own.shape, other.shape):
         return None
-    a = own.shape.body
+    a, b = own.shape.body, other.shape.body
     assert a is not None
+    assert b is not None
     approach = abs(own.velocity - other.velocity) + own.fastest_turn + other.fastest_turn
     if approach == 0.0:
         return None
@@ -184,11 +189,11 @@ def _first_touch(own: _Way, other: _Way, dt: float, slop: float) -> Touch | None
         if distance <= 0.01 * slop:
             if distance <= 0.0 and time == 0.0:
                 return None
-            return Touch(a, min(time + 0.5 * slop / approach, dt), _closing(own.shape, other.shape, time))
+            return Touch(a, b, min(time + 0.5 * slop / approach, dt), _closing(own.shape, other.shape, time))
         time += distance / approach
         if time >= dt:
             return None
-    return Touch(a, min(time, dt), _closing(own.shape, other.shape, time))
+    return Touch(a, b, min(time, dt), _closing(own.shape, other.shape, time))
 
 
 def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[float, float]:

@@ -27,12 +27,11 @@ from sim.chipmunk import (
     words,
 )
 from sim.kernels import noted
+from sim.kernels.refusal import ROUNDING
 from sim.noted import Notes
 
 # Above this, squares are not finite.
 _BOUND = 1e150
-# Over 1 + |x|: nearer than this to where the last step ended, a body has gone back to just there [m, rad].
-_ROUNDING = 1e-12
 
 
 def reason(place: str, bodies: tuple[pymunk.Body, pymunk.Body], moving: Collection[pymunk.Body], step: float) -> str:
@@ -120,7 +119,7 @@ class StepBack:
         with np.errstate(invalid="ignore", over="ignore"):
             place = row[noted.MOVED : noted.MOVED + 3] - self._step * (speed + push)
         then = row[noted.PLACE : noted.PLACE + 9]
-        if known and not (np.abs(place - then[:3]) > _ROUNDING * (1.0 + np.abs(then[:3]))).any():
+        if known and not (np.abs(place - then[:3]) > ROUNDING * (1.0 + np.abs(then[:3]))).any():
             place = then
         chipmunk.put_body(location, place)
         b = words(location, SLEEP_WORDS)

@@ -62,7 +62,6 @@ from sim.kernels.layout import (
     HASH,
     INDEX_A,
     INDEX_B,
-    KEPT,
     LOOSE_AT,
     LOOSE_START,
     NORMAL,
@@ -134,7 +133,6 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 if w[ARBITER_STATE] & 0xFFFFFFFF == FIRST:
                     contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = 0.0, 0.0
                 touch[CACHED], touch[CACHED + 1] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE]
-                touch[KEPT], touch[KEPT + 1] = touch[CACHED], touch[CACHED + 1]
                 touch[EARLIER], touch[EARLIER + 1] = 0.0, 0.0
                 load_loose(touch, floats(other, BODY_WORDS))
                 for row in range(2):

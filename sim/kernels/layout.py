@@ -179,11 +179,11 @@ PLACE_WORDS = 8
 # cached impulses, velocities of the other side's point at the step's start (normal, tangent); velocity x, y and spin of
 # the loose body at the step's start, distance of the surfaces, impulses of the step's earlier parts, wanted velocity by
 # restitution alone, speed with which bodies struck each other in this contact, position x, y and angle of the
-# loose body at the step's start, cached impulses before the step; how far the two shapes reach from their bodies'
-# centres, and their restitution, for contacts that come within the step.
+# loose body at the step's start; how far the two shapes reach from their bodies' centres, and their restitution, for
+# contacts that come within the step.
 NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
-CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE, LOOSE_AT, KEPT = 10, 12, 14, 17, 18, 20, 21, 22, 25
-REACH, RETURN = 27, 29
-TOUCH_WORDS = 30
+CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE, LOOSE_AT = 10, 12, 14, 17, 18, 20, 21, 22
+REACH, RETURN = 25, 27
+TOUCH_WORDS = 28
 # Distance of surfaces that cannot meet before contacts are found anew; it stays that, however they move [m].
 FAR = math.inf

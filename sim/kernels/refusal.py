@@ -18,13 +18,6 @@ from sim.chipmunk import (
     BODY_WORDS,
     CONSTRAINT_SPACE,
     CONSTRAINT_WORDS,
-    CONSTRAINTS,
-    CONTACT_NORMAL_IMPULSE,
-    CONTACT_TANGENT_IMPULSE,
-    CONTACT_WORDS,
-    MASS_INVERSE,
-    SPIN,
-    VX,
     X,
 )
 from sim.kernels import layout as at
@@ -32,24 +25,15 @@ from sim.kernels import views
 from sim.kernels.bodies import move, put, reached, stays, store_velocities
 from sim.kernels.layout import (
     BEFORE,
-    BODY_A,
-    BODY_B,
-    KEPT,
-    LOOSE_AT,
-    LOOSE_START,
-    OWNER_A,
-    OWNER_B,
     RESULT_FORCE,
     STEP,
-    WHERE,
     WHOLE_STEP,
 )
-from sim.kernels.others import pushed
 from sim.kernels.settle import first_joint_at
 from sim.memory import call_notice, clear, floats, integers, kernel
 
-# Over 1 + |x|: nearer than this to where the last step ended, a body has gone back to just there [m, rad].
-_ROUNDING = 1e-12
+#: Over 1 + |x|: nearer than this to where the last step ended, a body has gone back to just there [m, rad].
+ROUNDING = 1e-12
 
 
 @kernel
@@ -119,7 +103,7 @@ def refuse(head):  # type: ignore[no-untyped-def]
 
 @kernel
 def roll_back(t):  # type: ignore[no-untyped-def]
-    """Put a structure, and free loose bodies that touch it, back to how they were before the step."""
+    """Put a structure back to how it was before the step."""
     settings, body_at, begun = views.settings(t), views.body_at(t), views.per_body(t, at.BEGUN_AT)
     h = settings[WHOLE_STEP]
     if t[at.PARTS] > 1:
@@ -145,7 +129,6 @@ def roll_back(t):  # type: ignore[no-untyped-def]
         for i in range(3):
             impulse[k, i] = -settings[STEP] * result[k, RESULT_FORCE + i]
     t[at.BROKE] = 0
-    give_back_contacts(t, h)
 
 
 @kernel
@@ -172,37 +155,9 @@ def step_back(t, i, h):  # type: ignore[no-untyped-def]
             continue
         b[word] = now - h * (last[i, axis] + shift[i, axis])
         by_hand = abs(b[word] - noted[i, axis])
-        if not math.isfinite(b[word]) or by_hand <= _ROUNDING * (1.0 + abs(b[word])):
+        if not math.isfinite(b[word]) or by_hand <= ROUNDING * (1.0 + abs(b[word])):
             b[word] = noted[i, axis]
     move(body, 0.0, 0.0, 0.0)
-
-
-@kernel
-def give_back_contacts(t, h):  # type: ignore[no-untyped-def]
-    """Give contacts the impulses they came with, and free loose bodies their places and velocities."""
-    places, touches = views.places(t), views.touches(t)
-    for k in range(t[at.CONTACTS]):
-        place, touch = places[k], touches[k]
-        contact = floats(place[WHERE], CONTACT_WORDS)
-        contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = touch[KEPT], touch[KEPT + 1]
-        if place[OWNER_A] != 0 and place[OWNER_B] != 0:
-            continue
-        body = place[BODY_A] if place[OWNER_A] == 0 else place[BODY_B]
-        b = floats(body, BODY_FULL_WORDS)
-        if b[MASS_INVERSE] == 0.0 or integers(body, BODY_FULL_WORDS)[CONSTRAINTS] != 0:
-            continue
-        b[VX], b[VX + 1], b[SPIN] = touch[LOOSE_START], touch[LOOSE_START + 1], touch[LOOSE_START + 2]
-        row = pushed(t, body)
-        for axis in range(3):
-            b[BIAS_SPIN if axis == 2 else BIAS_VX + axis] = (
-                floats(t[at.PUSHES] + 32 * row, 4)[1 + axis] if row >= 0 else 0.0
-            )
-        put(
-            body,
-            touch[LOOSE_AT] - h * (b[VX] + b[BIAS_VX]),
-            touch[LOOSE_AT + 1] - h * (b[VX + 1] + b[BIAS_VX + 1]),
-            touch[LOOSE_AT + 2] - h * (b[SPIN] + b[BIAS_SPIN]),
-        )
 
 
 @kernel

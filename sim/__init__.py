@@ -19,7 +19,8 @@ from sim.motion import Course, follow, set_going  # noqa: E402
 from sim.pushover import PACE, Pace, Push, push_over  # noqa: E402
 from sim.recording import Recorder, Recording  # noqa: E402
 from sim.rules import RULES, Rule, equal, graded, lobatto, radau  # noqa: E402
-from sim.structure import SolverError, Structure  # noqa: E402
+from sim.step_back import SolverError  # noqa: E402
+from sim.structure import Structure  # noqa: E402
 from sim.system_ledger import SystemLedger  # noqa: E402
 
 __all__ = [

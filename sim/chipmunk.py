@@ -1,4 +1,4 @@
-"""Chipmunk's structs: the only file that knows where their fields lie.
+"""Chipmunk's structs: the only file that knows where their fields lie, but for trees (`sim.tree_fields`).
 
 A Chipmunk constraint is a C struct whose first field points to a table of four functions. `adopt` takes an ordinary
 pymunk constraint and gives it a table of our own, so that Chipmunk's solver calls our functions in its place.
@@ -153,50 +153,6 @@ def push_apart(body: pymunk.Body, velocity: np.ndarray | float) -> None:
 def overlap(one: pymunk.Shape, other: pymunk.Shape) -> bool:
     """Whether two shapes overlap where their bodies are; pymunk's own test takes it for granted."""
     return bool(lib.cpShapesCollide(one._shape, other._shape).count)
-
-
-def outline(shape: pymunk.Shape) -> object:
-    """A shape of the same outline and body that is in no space, for `nearest_points`; freed when nobody holds it."""
-    body = shape.body
-    assert body is not None
-    if isinstance(shape, pymunk.Circle):
-        own = lib.cpCircleShapeNew(body._body, shape.radius, shape.offset)
-    elif isinstance(shape, pymunk.Segment):
-        own = lib.cpSegmentShapeNew(body._body, shape.a, shape.b, shape.radius)
-    else:
-        assert isinstance(shape, pymunk.Poly)
-        corners = shape.get_vertices()
-        own = lib.cpPolyShapeNewRaw(body._body, len(corners), corners, shape.radius)
-    return ffi.gc(own, lib.cpShapeFree)
-
-
-def grow(shape: pymunk.Shape, own: object, margin: float) -> None:
-    """Round an `outline` by ``margin`` [m] more than its shape."""
-    assert isinstance(shape, pymunk.Circle | pymunk.Segment | pymunk.Poly)
-    kinds = {pymunk.Circle: lib.cpCircleShapeSetRadius, pymunk.Segment: lib.cpSegmentShapeSetRadius}
-    kinds.get(type(shape), lib.cpPolyShapeSetRadius)(own, shape.radius + margin)
-
-
-def bring_up_to_date(own: object) -> pymunk.BB:
-    """Put an `outline` to where its body is; returns its box."""
-    box = lib.cpShapeCacheBB(own)
-    return pymunk.BB(box.l, box.b, box.r, box.t)
-
-
-def nearest_points(one: object, other: object) -> tuple[tuple[float, float], list[tuple[float, float, float, float]]]:
-    """Where two outlines touch: the normal from the first to the second, and at most two pairs of points.
-
-    Of each the point on the first and that on the second; Chipmunk's own distance has the wrong sign for some kinds.
-    """
-    found = lib.cpShapesCollide(one, other)
-    points = [found.points[i] for i in range(found.count)]
-    return (found.normal.x, found.normal.y), [(p.pointA.x, p.pointA.y, p.pointB.x, p.pointB.y) for p in points]
-
-
-def shift(own: object, body: pymunk.Body, x: float, y: float) -> None:
-    """Put an `outline` to where its body is, moved by ``x`` and ``y``."""
-    *turn, right, up = words(body_address(body), BODY_WORDS)[COSINE : ORIGIN + 2].tolist()
-    lib.cpShapeUpdate(own, (*turn, right + x, up + y))
 
 
 def save_body(body: pymunk.Body) -> np.ndarray:

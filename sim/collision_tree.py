@@ -16,22 +16,45 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 
-from sim.chipmunk import SPACE_SHAPES, SPACE_WORDS, address, words
+from sim.chipmunk import words
 from sim.installed import check, is_address
-
-# cpBBTree: its kind, the set of its leaves, root, pools and counter of changes.
-_KIND, _LEAVES, _ROOT, _PAIR_POOL, _STAMP, _TREE_WORDS = 0, 5, 6, 8, 10, 11
-# Node: shape (none within the tree), box, node above; two below, or of a leaf when it last changed and its pairs.
-_SHAPE, _BOX, _ABOVE, _FIRST, _SECOND, _NODE_WORDS = 0, slice(1, 5), 5, 6, 7, 8
-_CHANGED, _PAIRS = _FIRST, _SECOND
-# Pair: for each of its two leaves the pair before in that leaf's list, the leaf, and the pair after; then the features
-# that were nearest.
-_BEFORE, _LEAF, _AFTER, _FEATURES, _PAIR_WORDS = (0, 3), (1, 4), (2, 5), 6, 7
-# cpHashSet: how many it holds and how many lists there are, half a word each; the lists. Bin: what it holds, by which
-# number, and the bin after.
-_SIZES, _TABLE, _SET_WORDS = 0, 3, 5
-_HELD, _HASH, _NEXT, _BIN_WORDS = 0, 1, 2, 3
-_HALF = 0xFFFFFFFF
+from sim.tree_fields import (
+    ABOVE,
+    AFTER,
+    BEFORE,
+    BIN_WORDS,
+    BOX,
+    CHANGED,
+    FEATURES,
+    FIRST,
+    HALF,
+    HASH,
+    HELD,
+    KIND,
+    LEAF,
+    LEAVES,
+    NEXT,
+    NODE_WORDS,
+    PAIR_POOL,
+    PAIR_WORDS,
+    PAIRS,
+    ROOT,
+    SECOND,
+    SET_WORDS,
+    SHAPE,
+    SIZES,
+    STAMP,
+    TABLE,
+    TREE_WORDS,
+    bins_of,
+    leaves_of,
+    nodes_of,
+    pairs_of,
+    shape_address,
+    tree_addresses,
+    tree_kind,
+    word_at,
+)
 
 
 @dataclass(frozen=True)
@@ -84,17 +107,17 @@ class CollisionTrees:
     @classmethod
     def of(cls, space: pymunk.Space, shapes: Sequence[pymunk.Shape]) -> CollisionTrees | None:
         """Those of ``space``, whose shapes are all listed; None when it uses a spatial hash."""
-        at = _tree_addresses(space)
-        if any(_word(tree, _KIND) != _tree_kind() for tree in at):
+        at = tree_addresses(space)
+        if any(word_at(tree, KIND) != tree_kind() for tree in at):
             return None
-        place = {_shape_address(shape): i for i, shape in enumerate(shapes)}
-        leaves = {place[_word(leaf, _SHAPE)]: leaf for tree in at for leaf in _leaves(tree)}
+        place = {shape_address(shape): i for i, shape in enumerate(shapes)}
+        leaves = {place[word_at(leaf, SHAPE)]: leaf for tree in at for leaf in leaves_of(tree)}
         pairs: dict[int, int] = {}
-        near = [[pairs.setdefault(p, len(pairs)) for p in _pairs_of(leaves[i])] for i in range(len(shapes))]
+        near = [[pairs.setdefault(p, len(pairs)) for p in pairs_of(leaves[i])] for i in range(len(shapes))]
         return cls(
             (_read_tree(at[0], place), _read_tree(at[1], place)),
             [shape._hashid for shape in shapes],
-            [_word(leaves[i], _CHANGED) & _HALF for i in range(len(shapes))],
+            [word_at(leaves[i], CHANGED) & HALF for i in range(len(shapes))],
             [_read_pair(pair, place) for pair in pairs],
             near,
         )
@@ -102,9 +125,9 @@ class CollisionTrees:
     def restore(self, space: pymunk.Space, shapes: Sequence[pymunk.Shape]) -> None:
         """Put them back to a space with the same shapes, each in the tree that it was in."""
         self._make_room(space)
-        at = _tree_addresses(space)
-        leaves = {_word(leaf, _SHAPE): leaf for tree in at for leaf in _leaves(tree)}
-        leaf_of = [leaves[_shape_address(shape)] for shape in shapes]
+        at = tree_addresses(space)
+        leaves = {word_at(leaf, SHAPE): leaf for tree in at for leaf in leaves_of(tree)}
+        leaf_of = [leaves[shape_address(shape)] for shape in shapes]
         free = self._free_pairs(at, leaf_of)
         for shape, number in zip(shapes, self.numbers, strict=True):
             shape._hashid = number
@@ -112,20 +135,20 @@ class CollisionTrees:
             _write_set(tree, saved, [leaf_of[i] for i in saved.leaves], [self.numbers[i] for i in saved.leaves])
             _write_tree(tree, saved, leaf_of)
         for leaf, changed in zip(leaf_of, self.changed, strict=True):
-            words(leaf, _NODE_WORDS, np.int64)[_CHANGED] = changed
+            words(leaf, NODE_WORDS, np.int64)[CHANGED] = changed
         self._write_pairs(leaf_of, free[: len(self.pairs)])
         pool = 0
         for pair in free[len(self.pairs) :]:
-            words(pair, _PAIR_WORDS, np.int64)[_AFTER[0]] = pool
+            words(pair, PAIR_WORDS, np.int64)[AFTER[0]] = pool
             pool = pair
-        words(at[1], _TREE_WORDS, np.int64)[_PAIR_POOL] = pool
+        words(at[1], TREE_WORDS, np.int64)[PAIR_POOL] = pool
 
     def _make_room(self, space: pymunk.Space) -> None:
         """Have Chipmunk allocate what is lacking, by shapes in one place that are added and taken out again."""
-        at = _tree_addresses(space)
+        at = tree_addresses(space)
         for tree, saved, kind in zip(at, self.trees, (pymunk.Body.STATIC, pymunk.Body.KINEMATIC), strict=True):
-            lists = _word(_word(tree, _LEAVES), _SIZES) >> 32
-            lacking = saved.lists - sum(1 for _ in _leaves(tree)) if lists < saved.lists else 0
+            lists = word_at(word_at(tree, LEAVES), SIZES) >> 32
+            lacking = saved.lists - sum(1 for _ in leaves_of(tree)) if lists < saved.lists else 0
             if kind == pymunk.Body.KINEMATIC:
                 # As many as pair with each other often enough.
                 lacking = max(lacking, 2 + int((2.0 * len(self.pairs)) ** 0.5))
@@ -136,25 +159,25 @@ class CollisionTrees:
 
     def _free_pairs(self, at: tuple[int, int], leaf_of: Sequence[int]) -> list[int]:
         """Addresses of all pairs that there are, in use or not."""
-        found = dict.fromkeys(pair for leaf in leaf_of for pair in _pairs_of(leaf))
-        pair = _word(at[1], _PAIR_POOL)
+        found = dict.fromkeys(pair for leaf in leaf_of for pair in pairs_of(leaf))
+        pair = word_at(at[1], PAIR_POOL)
         while pair:
             found[pair] = None
-            pair = _word(pair, _AFTER[0])
+            pair = word_at(pair, AFTER[0])
         return list(found)
 
     def _write_pairs(self, leaf_of: Sequence[int], where: Sequence[int]) -> None:
         for pair, (first, second, features) in zip(where, self.pairs, strict=True):
-            w = words(pair, _PAIR_WORDS, np.int64)
+            w = words(pair, PAIR_WORDS, np.int64)
             w[:] = 0
-            w[_LEAF[0]], w[_LEAF[1]], w[_FEATURES] = leaf_of[first], leaf_of[second], features
+            w[LEAF[0]], w[LEAF[1]], w[FEATURES] = leaf_of[first], leaf_of[second], features
         for leaf, listed in zip(leaf_of, self.near, strict=True):
             chain = [where[k] for k in listed]
-            words(leaf, _NODE_WORDS, np.int64)[_PAIRS] = chain[0] if chain else 0
+            words(leaf, NODE_WORDS, np.int64)[PAIRS] = chain[0] if chain else 0
             for before, pair, after in zip([0, *chain], chain, [*chain[1:], 0], strict=False):
-                w = words(pair, _PAIR_WORDS, np.int64)
-                side = 0 if w[_LEAF[0]] == leaf else 1
-                w[_BEFORE[side]], w[_AFTER[side]] = before, after
+                w = words(pair, PAIR_WORDS, np.int64)
+                side = 0 if w[LEAF[0]] == leaf else 1
+                w[BEFORE[side]], w[AFTER[side]] = before, after
 
 
 def verify() -> None:
@@ -173,11 +196,11 @@ def verify() -> None:
     for _ in range(2):
         space.step(1.0)
     found = [
-        {_word(at, _HELD): _word(at, _HASH) for at in _bins(tree)} if _is_whole(tree, count) else {}
-        for tree, count in zip(_tree_addresses(space), (1, 2), strict=True)
+        {word_at(at, HELD): word_at(at, HASH) for at in bins_of(tree)} if _is_whole(tree, count) else {}
+        for tree, count in zip(tree_addresses(space), (1, 2), strict=True)
     ]
-    known = {_word(leaf, _SHAPE): number for tree in found for leaf, number in tree.items()}
-    check(known == {_shape_address(shape): shape._hashid for shape in shapes})
+    known = {word_at(leaf, SHAPE): number for tree in found for leaf, number in tree.items()}
+    check(known == {shape_address(shape): shape._hashid for shape in shapes})
     trees = CollisionTrees.of(space, shapes)
     check(trees is not None)
     assert trees is not None
@@ -188,100 +211,43 @@ def verify() -> None:
 
 def _is_whole(tree: int, count: int) -> bool:
     """Whether there is a set of so many leaves where there should be."""
-    held = _word(tree, _LEAVES)
+    held = word_at(tree, LEAVES)
     if not is_address(held):
         return False
-    sizes = _word(held, _SIZES)
-    return sizes & _HALF == count and count <= sizes >> 32 < 1000
-
-
-def _tree_kind() -> int:
-    return _word(_tree_addresses(_REFERENCE)[0], _KIND)
-
-
-#: A space that is never anything but new.
-_REFERENCE = pymunk.Space()
-
-
-def _tree_addresses(space: pymunk.Space) -> tuple[int, int]:
-    w = words(address(space._space), SPACE_WORDS, np.int64)
-    return int(w[SPACE_SHAPES]), int(w[SPACE_SHAPES + 1])
-
-
-def _shape_address(shape: pymunk.Shape) -> int:
-    return address(shape._shape)
-
-
-def _word(location: int, word: int) -> int:
-    return int(words(location, word + 1, np.int64)[word])
-
-
-def _bins(tree: int) -> list[int]:
-    """Bins of a tree's set of leaves, in the order in which Chipmunk goes through them."""
-    found, held = [], _word(tree, _LEAVES)
-    for first in words(_word(held, _TABLE), _word(held, _SIZES) >> 32, np.int64).tolist():
-        at = first
-        while at:
-            found.append(at)
-            at = _word(at, _NEXT)
-    return found
-
-
-def _leaves(tree: int) -> list[int]:
-    return [_word(at, _HELD) for at in _bins(tree)]
-
-
-def _pairs_of(leaf: int) -> list[int]:
-    found, pair = [], _word(leaf, _PAIRS)
-    while pair:
-        found.append(pair)
-        w = words(pair, _PAIR_WORDS, np.int64)
-        pair = int(w[_AFTER[0 if w[_LEAF[0]] == leaf else 1]])
-    return found
+    sizes = word_at(held, SIZES)
+    return sizes & HALF == count and count <= sizes >> 32 < 1000
 
 
 def _read_pair(pair: int, place: dict[int, int]) -> tuple[int, int, int]:
-    w = words(pair, _PAIR_WORDS, np.int64)
-    first, second = (place[_word(int(w[leaf]), _SHAPE)] for leaf in _LEAF)
-    return first, second, int(w[_FEATURES]) & _HALF
-
-
-def _nodes(tree: int) -> list[int]:
-    """Nodes from the root on, first branches first."""
-    found, left = [], [_word(tree, _ROOT)]
-    while left:
-        node = left.pop()
-        if node:
-            found.append(node)
-            if _word(node, _SHAPE) == 0:
-                left += [_word(node, _SECOND), _word(node, _FIRST)]
-    return found
+    w = words(pair, PAIR_WORDS, np.int64)
+    first, second = (place[word_at(int(w[leaf]), SHAPE)] for leaf in LEAF)
+    return first, second, int(w[FEATURES]) & HALF
 
 
 def _read_tree(tree: int, place: dict[int, int]) -> _Tree:
-    nodes = _nodes(tree)
-    boxes = [words(node, _NODE_WORDS)[_BOX].copy() for node in nodes]
+    nodes = nodes_of(tree)
+    boxes = [words(node, NODE_WORDS)[BOX].copy() for node in nodes]
     return _Tree(
-        _word(tree, _STAMP) & _HALF,
-        _word(_word(tree, _LEAVES), _SIZES) >> 32,
-        [place[_word(leaf, _SHAPE)] for leaf in _leaves(tree)],
-        [place.get(_word(node, _SHAPE), -1) for node in nodes],
+        word_at(tree, STAMP) & HALF,
+        word_at(word_at(tree, LEAVES), SIZES) >> 32,
+        [place[word_at(leaf, SHAPE)] for leaf in leaves_of(tree)],
+        [place.get(word_at(node, SHAPE), -1) for node in nodes],
         np.array(boxes).reshape(-1, 4),
     )
 
 
 def _write_set(tree: int, saved: _Tree, leaves: Sequence[int], numbers: Sequence[int]) -> None:
     """Put the leaves into as many lists as there were, in their order; Chipmunk may have room for more."""
-    bins, held = _bins(tree), words(_word(tree, _LEAVES), _SET_WORDS, np.int64)
-    held[_SIZES] = len(leaves) | saved.lists << 32
-    table = words(int(held[_TABLE]), saved.lists, np.int64)
+    bins, held = bins_of(tree), words(word_at(tree, LEAVES), SET_WORDS, np.int64)
+    held[SIZES] = len(leaves) | saved.lists << 32
+    table = words(int(held[TABLE]), saved.lists, np.int64)
     table[:] = 0
     last: dict[int, int] = {}
     for at, leaf, number in zip(bins, leaves, numbers, strict=True):
-        words(at, _BIN_WORDS, np.int64)[:] = leaf, number, 0
+        words(at, BIN_WORDS, np.int64)[:] = leaf, number, 0
         index = number % saved.lists
         if index in last:
-            words(last[index], _BIN_WORDS, np.int64)[_NEXT] = at
+            words(last[index], BIN_WORDS, np.int64)[NEXT] = at
         else:
             table[index] = at
         last[index] = at
@@ -289,22 +255,22 @@ def _write_set(tree: int, saved: _Tree, leaves: Sequence[int], numbers: Sequence
 
 def _write_tree(tree: int, saved: _Tree, leaf_of: Sequence[int]) -> None:
     """Link the nodes anew."""
-    inner = [node for node in _nodes(tree) if _word(node, _SHAPE) == 0]
+    inner = [node for node in nodes_of(tree) if word_at(node, SHAPE) == 0]
     nodes = [leaf_of[i] if i >= 0 else inner.pop() for i in saved.nodes]
     # Nodes whose branches are still to come.
     above: list[int] = []
     for node, shape, box in zip(nodes, saved.nodes, saved.boxes, strict=True):
-        words(node, _NODE_WORDS)[_BOX] = box
-        w = words(node, _NODE_WORDS, np.int64)
-        w[_ABOVE] = above[-1] if above else 0
+        words(node, NODE_WORDS)[BOX] = box
+        w = words(node, NODE_WORDS, np.int64)
+        w[ABOVE] = above[-1] if above else 0
         if above:
-            parent = words(above[-1], _NODE_WORDS, np.int64)
-            if parent[_FIRST] == 0:
-                parent[_FIRST] = node
+            parent = words(above[-1], NODE_WORDS, np.int64)
+            if parent[FIRST] == 0:
+                parent[FIRST] = node
             else:
-                parent[_SECOND] = node
+                parent[SECOND] = node
                 above.pop()
         if shape < 0:
-            w[_FIRST], w[_SECOND] = 0, 0
+            w[FIRST], w[SECOND] = 0, 0
             above.append(node)
-    words(tree, _TREE_WORDS, np.int64)[[_ROOT, _STAMP]] = nodes[0] if nodes else 0, saved.stamp
+    words(tree, TREE_WORDS, np.int64)[[ROOT, STAMP]] = nodes[0] if nodes else 0, saved.stamp

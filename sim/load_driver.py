@@ -15,7 +15,7 @@ import numpy as np
 
 from sim.members import Assembly
 from sim.pieces import NodePoint
-from sim.structure import SolverError
+from sim.step_back import SolverError
 
 #: Time over which the node's ways are remembered, and over which it is brought back to where it is wanted [s].
 _MEMORY, _RETURN = 0.5, 0.2

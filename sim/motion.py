@@ -19,7 +19,7 @@ from sim.member_joints import JointPlace
 from sim.members import Assembly, assemble
 from sim.model import Model
 from sim.settling import SETTLING_STEP, settle
-from sim.structure import SolverError
+from sim.step_back import SolverError
 
 # What counts as rest after a motion, as a share of its peak a step; and for how many steps it is waited for.
 _REST = 1e-7

@@ -1,8 +1,8 @@
 """What is near a structure in a step that may be taken in parts: pairs of shapes, and where they come to touch.
 
-Chipmunk's own functions are asked, for outlines of the shapes that are in no space, so that nothing which it keeps of
-the shapes themselves is touched. An outline rounded by some more is touched that much sooner, and the same points are
-nearest: so surfaces are found before they meet.
+Chipmunk's own functions are asked, for copies of the shapes, so that nothing which it keeps of the shapes themselves is
+touched. A copy rounded by some more is touched that much sooner, and the same points are nearest: so surfaces are found
+before they meet.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pymunk
 
-from sim import chipmunk
+from sim import chipmunk, shape_copies
 from sim.first_touch import pass_each_other
 from sim.inner_edges import pass_inner_edges
 from sim.joint import DuctileJoint
@@ -37,7 +37,7 @@ class Surroundings:
 
     def __init__(self) -> None:
         self._pairs: list[tuple[pymunk.Shape, pymunk.Shape]] = []
-        self._outlines: dict[pymunk.Shape, object] = {}
+        self._copies: dict[pymunk.Shape, object] = {}
         self._impulses = np.zeros((0, chipmunk.CONTACT_WORDS))
 
     def answer(self, structure: Structure) -> None:
@@ -49,7 +49,7 @@ class Surroundings:
             self._look(structure)
         else:
             # The contacts themselves are read until the next step begins.
-            self._pairs, self._outlines = [], {}
+            self._pairs, self._copies = [], {}
 
     def _gather(self, structure: Structure) -> None:
         """List the pairs, and make two contacts of each that are not seen yet."""
@@ -89,12 +89,12 @@ class Surroundings:
         touches, boxes, centres = tables[at.TOUCHES][first : first + count], {}, {}
         own_shapes = dict.fromkeys(own for own, _ in self._pairs)
         for shape in own_shapes | dict.fromkeys(other for _, other in self._pairs):
-            if shape not in self._outlines:
-                self._outlines[shape] = chipmunk.outline(shape)
+            if shape not in self._copies:
+                self._copies[shape] = shape_copies.copy_of(shape)
             if shape in own_shapes:
-                chipmunk.grow(shape, self._outlines[shape], margin)
+                shape_copies.grow(shape, self._copies[shape], margin)
             assert shape.body is not None
-            boxes[shape] = chipmunk.bring_up_to_date(self._outlines[shape])
+            boxes[shape] = shape_copies.bring_up_to_date(self._copies[shape])
             centres[shape] = chipmunk.centre_of(shape.body)
         touches[:, at.GAP] = at.FAR
         for k, (own, other) in enumerate(self._pairs):
@@ -114,24 +114,24 @@ class Surroundings:
     def _nearest(
         self, own: pymunk.Shape, other: pymunk.Shape
     ) -> tuple[tuple[float, float], list[tuple[float, float, float, float]]]:
-        """As `chipmunk.nearest_points`, which takes a corner for its edge where another lies right in line with that.
+        """As `nearest_points`, which takes a corner for its edge where another lies right in line with that.
 
         Points that do not face each other tell. So the other shape is moved out of line, by next to nothing.
         """
-        one, two = self._outlines[own], self._outlines[other]
-        normal, points = chipmunk.nearest_points(one, two)
+        one, two = self._copies[own], self._copies[other]
+        normal, points = shape_copies.nearest_points(one, two)
         enough = _IN_LINE * _extent(own)[1]
         if _face(normal, points, enough):
             return normal, points
         assert other.body is not None
         for way in (enough, -enough):
-            chipmunk.shift(two, other.body, way * normal[0], way * normal[1])
-            there, found = chipmunk.nearest_points(one, two)
+            shape_copies.shift(two, other.body, way * normal[0], way * normal[1])
+            there, found = shape_copies.nearest_points(one, two)
             if _face(there, found, 10.0 * enough):
                 break
         else:
             there, found = normal, []
-        chipmunk.bring_up_to_date(two)
+        shape_copies.bring_up_to_date(two)
         return there, found
 
 

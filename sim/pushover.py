@@ -20,7 +20,7 @@ from sim.members import assemble
 from sim.model import Model
 from sim.second_order import SecondOrder
 from sim.settling import settle
-from sim.structure import SolverError
+from sim.step_back import SolverError
 
 # Where inertia bears too much, a push takes longer, up to so many times.
 _LONGEST = 8.0

@@ -8,7 +8,7 @@ import pymunk
 
 from scene import Scene
 from sim.members import Assembly
-from sim.structure import SolverError
+from sim.step_back import SolverError
 
 #: Step while a scene settles [s]; long, for the longer it is the more it damps.
 SETTLING_STEP = 1.0 / 60.0

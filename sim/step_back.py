@@ -34,6 +34,10 @@ from sim.noted import Notes
 _BOUND = 1e150
 
 
+class SolverError(RuntimeError):
+    """A step that was refused."""
+
+
 def reason(place: str, bodies: tuple[pymunk.Body, pymunk.Body], moving: Collection[pymunk.Body], step: float) -> str:
     """Why a step [s] cannot begin, and what to do, where its fault is that of a joint between two ``bodies``.
 

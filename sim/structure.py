@@ -20,17 +20,13 @@ from sim.noted import Notes, notes_of
 from sim.notices import listen
 from sim.ordering import minimum_degree
 from sim.readings import Readings
+from sim.refused_step import RefusedStep, space_of
 from sim.space_state import look_after
-from sim.step_back import StepBack, not_finite, raise_after_step, reason
 from sim.tables import Tables
 
 _TOLERANCE = 1e-9
 # A blow that lasts does so in the structures that break off.
 _OF_BLOW = [at.BLOW, at.BLOW_KINETIC, at.BLOW_LEAST, at.BLOW_MOST, at.BLOW_MOST_AT, at.BLOW_AGE, at.BLOW_SHARE]
-
-
-class SolverError(RuntimeError):
-    """A step that was refused."""
 
 
 class Structure(Readings):
@@ -69,8 +65,6 @@ class Structure(Readings):
     _restored = 0
     # What is noted of the space in a step; once it has been looked through.
     _notes: Notes
-    # In a step that cannot be taken: why, and how the space was before.
-    _refusal: tuple[str, StepBack | None] = "", None
 
     def __init__(
         self, joints: Sequence[DuctileJoint], tolerance: float = _TOLERANCE, after: Structure | None = None
@@ -101,6 +95,7 @@ class Structure(Readings):
         self._control = self.tables.control
         self._control[[at.NOTICE, at.KEY]] = listen(self)
         self._surroundings = Surroundings()
+        self._refused = RefusedStep()
         self._settings, self._result = self.tables[at.SETTINGS], self.tables[at.RESULT]
 
     def _take_over(self, after: Structure | None) -> None:
@@ -284,20 +279,7 @@ class Structure(Readings):
             return
         fault = int(self._control[at.FAULT])
         if fault >= 0:
-            joint = self.joints[fault]
-            x, y = joint.at
-            place = f"joint {fault} (made at {x:g}, {y:g})"
-            if self._control[at.LEADER]:
-                why = ""
-                if self._control[at.FRESH] == 1:
-                    moving = self.bodies[: int(self._control[at.MOVING])]
-                    why = reason(place, (joint.a, joint.b), moving, self.step)
-                self._refusal = why, self._step_back(_space_of(joint))
-                return
-            self._control[at.FAULT] = -1
-            (why, back), self._refusal = self._refusal, ("", None)
-            error = SolverError(f"the step was refused: {why or not_finite(place)}")
-            raise_after_step(_space_of(joint), error, back)
+            self._refused.told(self, self.joints[fault], self._notes)
             return
         if self._control[at.PARTS] > 1 and not self._control[at.COPY]:
             self.tables.make_copy()
@@ -310,24 +292,10 @@ class Structure(Readings):
             return
         for joint in self.joints:
             if joint.broken and joint.structure is self:
-                space = _space_of(joint)
+                space = space_of(joint)
                 if joint in space.constraints:
                     space.remove(joint)
                     if joint.on_break is not None:
                         joint.on_break(joint)
             elif joint.structure is self:
                 joint.ask_for_structure()
-
-    def _step_back(self, space: pymunk.Space) -> StepBack:
-        """Have all other structures of the space refuse the step, too, and note how all else was."""
-        structures = {joint.structure for joint in space.constraints if isinstance(joint, DuctileJoint)}
-        for structure in structures:
-            if structure is not None and structure._control[at.FAULT] < 0 and not structure.bodies[0].is_sleeping:
-                structure._control[at.FAULT] = at.WITH_OTHERS
-        return StepBack(space, float(self._settings[at.WHOLE_STEP]), self._notes)
-
-
-def _space_of(joint: DuctileJoint) -> pymunk.Space:
-    body = joint.a if joint.a.body_type == pymunk.Body.DYNAMIC else joint.b
-    assert body.space is not None
-    return body.space

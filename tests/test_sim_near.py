@@ -179,4 +179,4 @@ def test_nothing_of_a_body_is_held_when_the_step_is_over() -> None:
     assert set(touching) <= {address(one._shape) for one in space.shapes}
     surroundings = structure._surroundings
     assert not surroundings._pairs
-    assert not surroundings._outlines
+    assert not surroundings._copies

@@ -3,20 +3,22 @@
 | file | job |
 |---|---|
 | ``layout``, ``views`` | what lies where in the memory that kernels and `sim.structure` share |
-| ``kinematics`` | deformations of the joints and their gradient |
-| ``inertia`` | masses of the bodies, with geometric stiffness where it must be implicit |
+| ``kinematics``, ``inertia`` | deformations of the joints and their gradient; masses, implicit geometric stiffness |
 | ``blocks`` | the matrix: assembly, L D Lᵀ by 3 × 3 blocks, substitution |
 | ``residual``, ``newton`` | impulses of the joints: Newton's method with a line search |
 | ``spread`` | a load pattern under displacement control |
-| ``contacts``, ``complement`` | contacts of the structures' bodies, solved through the structures |
-| ``restitution`` | no more bounce than there is energy for |
+| ``contacts``, ``complement``, ``rows`` | contacts of the structures' bodies, solved through the structures |
+| ``restitution``, ``overlap`` | no more bounce than there is energy for; taking out overlap |
+| ``owners``, ``others`` | which structures are solved together, and the bodies that move with them |
 | ``commit`` | the end of a step: plastic state, breaking, what the joints bore |
 | ``energy``, ``guard`` | the ledger, and no energy from nowhere |
 | ``resolved`` | the average-acceleration rule only where it resolves how bodies turn |
 | ``refusal``, ``noted`` | a step that is refused, and what else it has changed in the space |
-| ``loose`` | bodies without joints, for the ledger of a space |
-| ``bodies``, ``settle`` | velocities and places of the bodies; joints and contacts in turn until they agree |
-| ``blow``, ``parts`` | when a step is taken in parts, inside the one that Chipmunk takes, and how |
+| ``loose``, ``links`` | bodies without joints, for the ledger of a space; Chipmunk's own constraints between them |
+| ``bodies``, ``moves``, ``settle`` | velocities and places; joints and contacts in turn until they agree |
+| ``blow``, ``sudden`` | when a step is taken in parts, inside the one that Chipmunk takes |
+| ``parts``, ``part``, ``lengths`` | how it is taken in them, and how long they are |
+| ``near``, ``late`` | contacts that come and go within a step; bodies that touched before it began |
 | ``step``, ``callbacks`` | one step of a structure, and the functions that Chipmunk calls |
 """
 

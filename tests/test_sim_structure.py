@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pymunk
 import pytest
+from bodies import piece
 from cantilevers import cantilever
 from hard_cases import momenta
 from hypothesis import given
@@ -13,14 +14,7 @@ from hypothesis import strategies as st
 from twin import Twin
 
 import sim
-from sim import AVERAGE_ACCELERATION, DuctileJoint, ElasticPlastic, Limits, Model, SolverError, Structure
-
-
-def piece(space: pymunk.Space, mass: float, moment: float, x: float, y: float, angle: float = 0.0) -> pymunk.Body:
-    body = pymunk.Body(mass, moment)
-    body.position, body.angle = (x, y), angle
-    space.add(body)
-    return body
+from sim import AVERAGE_ACCELERATION, DuctileJoint, ElasticPlastic, Model, SolverError, Structure
 
 
 def portal(
@@ -209,186 +203,6 @@ def test_removed_joints_let_go() -> None:
     space.remove(*structure.joints[4:])
     space.step(0.1)
     assert bodies[5].velocity.y < -0.9
-
-
-LAW = ElasticPlastic((1e6, 1e6, 1e4), (1e4, 1e4, 1e3))
-
-
-def row(space: pymunk.Space, count: int, y: float = 0.0) -> tuple[list[pymunk.Body], list[DuctileJoint]]:
-    """Pieces of 1 m in a row and the joints between them, unsupported."""
-    bodies = [piece(space, 1.0, 1 / 12, i + 0.5, y) for i in range(count)]
-    return bodies, [DuctileJoint(a, b, (i + 1.0, y), LAW) for i, (a, b) in enumerate(itertools.pairwise(bodies))]
-
-
-def test_joints_that_share_bodies_form_one_structure_by_themselves() -> None:
-    space = pymunk.Space()
-    bodies, joints = row(space, 4)
-    others, other_joints = row(space, 3, y=5.0)
-    space.add(*joints, *other_joints)
-    assert joints[0].structure is None
-    space.step(1 / 60)
-    assert {j.structure for j in joints} == {joints[0].structure}
-    assert {j.structure for j in other_joints} == {other_joints[0].structure}
-    assert joints[0].structure is not other_joints[0].structure
-    bridge = DuctileJoint(bodies[3], others[0], (3.5, 2.5), LAW)
-    space.add(bridge)
-    space.step(1 / 60)
-    assert len({j.structure for j in [*joints, *other_joints, bridge]}) == 1
-
-
-def test_static_bodies_do_not_join_structures() -> None:
-    space = pymunk.Space()
-    joints = []
-    for i in range(2):
-        body = piece(space, 1.0, 1.0, 3.0 * i, 0.0)
-        joints.append(DuctileJoint(space.static_body, body, (3.0 * i, 1.0), LAW))
-    space.add(*joints)
-    space.step(1 / 60)
-    assert joints[0].structure is not joints[1].structure
-
-
-def test_a_structure_keeps_its_plastic_state_when_it_grows() -> None:
-    space = pymunk.Space()
-    bodies, joints = row(space, 3)
-    joints.append(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), LAW))
-    space.add(*joints)
-    bodies[2].apply_impulse_at_local_point((0.0, 60.0))
-    for _ in range(120):
-        space.step(1 / 60)
-    bent = [joint.plastic_deformation for joint in joints]
-    assert max(max(values) for values in bent) > 1e-3
-    force = [joint.force for joint in joints]
-    new = piece(space, 1.0, 1 / 12, *bodies[2].local_to_world((1.0, 0.0)), bodies[2].angle)
-    space.add(DuctileJoint(bodies[2], new, bodies[2].local_to_world((0.5, 0.0)), LAW))
-    space.step(1 / 60)
-    for joint, values, before in zip(joints, bent, force, strict=True):
-        np.testing.assert_allclose(joint.plastic_deformation, values, rtol=1e-6, atol=1e-9)
-        np.testing.assert_allclose(joint.force, before, rtol=1e-2, atol=5.0)
-
-
-def test_stock_constraints_work_beside_joints() -> None:
-    """A motor turns a jointed row at its own rate, whatever the joints bear."""
-    space = pymunk.Space()
-    space.iterations = 30
-    bodies, joints = row(space, 3)
-    pivot = pymunk.PivotJoint(space.static_body, bodies[0], (0.0, 0.0))
-    motor = pymunk.SimpleMotor(space.static_body, bodies[0], -1.0)
-    space.add(*joints, pivot, motor)
-    for _ in range(240):
-        space.step(1 / 240)
-    assert bodies[0].angular_velocity == pytest.approx(1.0, rel=1e-3)
-    assert bodies[2].angular_velocity == pytest.approx(1.0, rel=2e-2)
-
-
-def test_constraints_elsewhere_change_nothing() -> None:
-    """Not what a structure does alone, nor how it lets go of a joint that a stock constraint takes the place of."""
-
-    def positions(crowded: bool) -> bytes:
-        space = pymunk.Space()
-        space.gravity = (0.0, -10.0)
-        if crowded:
-            far = [piece(space, 1.0, 1.0, x, 99.0) for x in (0.0, 1.0)]
-            space.add(pymunk.PinJoint(*far))
-        bodies, joints = row(space, 3)
-        space.add(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), LAW), *joints)
-        found = b""
-        for k in range(60):
-            if k == 30:
-                space.remove(joints[0])
-                space.add(pymunk.PivotJoint(bodies[0], bodies[1], (1.0, 0.0)))
-            space.step(1 / 60)
-            found += np.array([body.position for body in bodies]).tobytes()
-        return found
-
-    assert positions(crowded=False) == positions(crowded=True)
-
-
-def test_a_structure_falls_asleep_and_wakes_up() -> None:
-    space = pymunk.Space()
-    space.gravity = (0.0, -9.81)
-    space.sleep_time_threshold = 1.0
-    bodies, joints = row(space, 3)
-    joints.append(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), LAW))
-    space.add(*joints)
-    for _ in range(240):
-        space.step(1 / 60)
-    assert all(body.is_sleeping for body in bodies)
-    held = bodies[2].position
-    bodies[2].activate()
-    for _ in range(6):
-        space.step(1 / 60)
-    assert not bodies[0].is_sleeping
-    assert bodies[2].position.get_distance(held) < 1e-4
-
-
-def test_a_torn_row_becomes_two_structures() -> None:
-    """A row hung by its first joint is torn in two; the two halves are two structures and fly apart freely."""
-    space = pymunk.Space()
-    bodies, joints = row(space, 4)
-    told: list[DuctileJoint] = []
-    weak = ElasticPlastic((1e6, 1e6, 1e4), (100.0, 1e4, 1e3))
-    joints[1] = DuctileJoint(
-        bodies[1], bodies[2], (2.0, 0.0), weak, limits=Limits(elongation=0.05), on_break=told.append
-    )
-    space.add(*joints)
-    for body in bodies[2:]:
-        body.velocity = (10.0, 0.0)
-    for _ in range(30):
-        space.step(1 / 60)
-    assert told == [joints[1]]
-    assert joints[1].broken
-    assert joints[1] not in space.constraints
-    assert joints[1].capacity_used == 1.0
-    assert joints[1].force == (0.0, 0.0, 0.0)
-    assert joints[0].structure is not joints[2].structure
-    assert not joints[0].broken
-    momentum = sum(body.mass * body.velocity.x for body in bodies)
-    assert momentum == pytest.approx(20.0, rel=1e-12)
-    # The joint took N p_lim and its elastic stretch; implicit Euler damps what the halves then vibrate with.
-    assert joints[1].dissipated == pytest.approx(100.0 * 0.05, rel=0.01)
-    lost = 100.0 - sum(0.5 * body.mass * body.velocity.length**2 for body in bodies)
-    assert 0.99 * 5.0 <= lost <= 1.1 * 5.0
-
-
-@pytest.mark.parametrize("mode", ["elongation", "slip", "rotation"])
-def test_energy_of_breaking_does_not_depend_on_the_step(mode: str) -> None:
-    """A fast body that breaks a joint loses what the joint had to give, at dt = 1/60 as at 1/4000 s."""
-    capacity, limit = 1000.0, 0.2
-    lost = []
-    for dt in (1 / 60, 1 / 240, 1 / 1000, 1 / 4000):
-        space = pymunk.Space()
-        body = piece(space, 10.0, 10.0, 0.0, 0.0)
-        law = ElasticPlastic((1e8, 1e8, 1e8), (capacity, capacity, capacity))
-        joint = DuctileJoint(space.static_body, body, (0.0, 0.0), law, direction=0.0, limits=Limits(**{mode: limit}))
-        space.add(joint)
-        if mode == "rotation":
-            body.angular_velocity = 30.0
-        else:
-            body.velocity = (30.0, 0.0) if mode == "elongation" else (0.0, 30.0)
-        before = 0.5 * body.kinetic_energy
-        for _ in range(math.ceil(0.1 / dt)):
-            space.step(dt)
-        assert joint.broken
-        lost.append(before - 0.5 * body.kinetic_energy)
-        assert joint.dissipated == pytest.approx(capacity * limit, rel=0.01)
-    assert max(lost) / min(lost) < 1.05
-    assert lost[-1] == pytest.approx(capacity * limit, rel=0.01)
-
-
-def test_compression_may_be_exempt_from_breaking() -> None:
-    for counts in (False, True):
-        space = pymunk.Space()
-        body = piece(space, 10.0, 10.0, 1.0, 0.0)
-        law = ElasticPlastic((1e8, 1e8, 1e8), (1000.0, 1e6, 1e6))
-        limits = Limits(elongation=0.1, compression_counts=counts)
-        joint = DuctileJoint(space.static_body, body, (0.0, 0.0), law, limits=limits)
-        space.add(joint)
-        body.velocity = (-10.0, 0.0)
-        for _ in range(60):
-            space.step(1 / 240)
-        assert joint.broken is counts
-        if not counts:
-            assert joint.plastic_deformation[1] == pytest.approx(0.5, rel=0.05)
 
 
 def test_viscous_damping_takes_its_own_share_of_the_energy() -> None:

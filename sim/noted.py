@@ -91,6 +91,11 @@ class Notes:
 _of_spaces: weakref.WeakKeyDictionary[pymunk.Space, Notes] = weakref.WeakKeyDictionary()
 
 
+def notes_known(space: pymunk.Space) -> Notes | None:
+    """Those of ``space`` as its last step left them, if a structure has ever taken any."""
+    return _of_spaces.get(space)
+
+
 def notes_of(space: pymunk.Space) -> Notes:
     """Those of ``space``, brought up to date."""
     notes = _of_spaces.setdefault(space, Notes())

@@ -101,7 +101,7 @@ class StepBack:
             self._put_back(row)
         for row in self._contacts:
             impulses = words(int(row[0].view(np.int64)), CONTACT_WORDS)[CONTACT_NORMAL_IMPULSE:]
-            impulses[:2] = row[1:]
+            impulses[:2] = row[1:3]
         for now, before in self._stock:
             now[:] = before
         if self._space.sleep_time_threshold < math.inf:

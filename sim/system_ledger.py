@@ -11,13 +11,15 @@ from sim.joint import DuctileJoint
 from sim.joint_watch import JointWatch
 from sim.kernels import compiled_callbacks
 from sim.kernels.loose import HELD, JOINED, LOOSE, TIED, read, touching
+from sim.loose_motion import LooseMotion, motion_of
 
 
 class LooseLedger:
     """Where the energy of the dynamic bodies goes that no ductile joint holds.
 
-    Reckoned as a structure's is (`sim.kernels.energy`): with the means of the velocities before and after a step. What
-    structures do to loose bodies at contacts is external work here, and the same with the other sign there.
+    Reckoned as a structure's is (`sim.kernels.energy`): with the means of the velocities before and after a step, and
+    over the parts of one that is taken in parts with a structure. What structures do to loose bodies at contacts is
+    external work here, and the same with the other sign there: theirs to the last digit (`sim.kernels.noted`).
 
     Parameters
     ----------
@@ -35,9 +37,10 @@ class LooseLedger:
         self.energy = Energy()
         self._bodies: list[pymunk.Body] = []
         self._addresses = self._order = np.zeros(0, dtype=np.int64)
-        # Bodies' addresses, kinds and velocities after the last step; by arbiter and hash, contacts' impulses and when.
+        # Addresses, kinds and velocities of bodies after the last step; by arbiter, hash and bodies, contacts' impulses
+        # and when.
         self._last = self._addresses, np.zeros(0, dtype=np.int64), np.zeros((0, 3))
-        self._impulses: dict[tuple[int, int], tuple[int, float, float]] = {}
+        self._impulses: dict[tuple[int, ...], tuple[int, float, float]] = {}
         self._step, self._stamp = 0.0, 0
         # By which a ductile joint is known, once there is one.
         self._functions = 0
@@ -55,13 +58,15 @@ class LooseLedger:
         was, start = self._listed_now(last, now)
         loose = (kind == LOOSE) | (kind == TIED)
         stayed = loose & ((was == LOOSE) | (was == TIED))
-        mean = 0.5 * (start + now)
         moving = np.where(loose[:, None], mass, 0.0)
-        gained = np.sum(moving * (now - start) * mean, axis=1)
-        weight = h * np.sum(moving[:, :2] * mean[:, :2] * self._space.gravity, axis=1)
+        gained = 0.5 * np.sum(moving * (now - start) * (now + start), axis=1)
+        motion = motion_of(self._space, self._addresses, self._order, start, now)
+        weight = motion.given + np.sum(moving[:, :2] * motion.way[:, :2] * self._space.gravity, axis=1)
         # What came off a structure in this step was in it when it was struck.
         struck = np.where(was == JOINED, JOINED, kind)
-        by_contacts, by_others, lost = self._contacts(struck, mean, places, touches, h)
+        by_contacts, by_others, lost = self._contacts(struck, motion, places, touches, h)
+        by_structures = np.where(stayed, motion.by_structures, 0.0)
+        by_contacts, by_others = by_contacts + by_structures, by_others + float(by_structures.sum())
         # All that changed a body's motion beside its weight and contacts.
         rest = np.where(stayed, gained - weight - by_contacts, 0.0)
         tied = kind == TIED
@@ -101,37 +106,40 @@ class LooseLedger:
         return kinds, np.where(new[:, None], now, velocities)
 
     def _contacts(
-        self, kind: np.ndarray, mean: np.ndarray, places: np.ndarray, touches: np.ndarray, h: float
+        self, kind: np.ndarray, motion: LooseMotion, places: np.ndarray, touches: np.ndarray, h: float
     ) -> tuple[np.ndarray, float, float]:
-        """Work of contacts on each loose body; that of structures and held bodies; and what was lost."""
+        """Work of contacts on each loose body, of held bodies, and what was lost; but for those with structures."""
         work, by_others, lost = np.zeros(len(kind)), 0.0, 0.0
         ratio = h / self._step if self._step > 0.0 else 1.0
         kept, self._impulses = self._impulses, {}
-        for (arbiter, hashed, a, b, first), (nx, ny, ax, ay, bx, by, jn, jt) in zip(
+        in_parts = (motion.mean != motion.last).any(axis=1)
+        for (arbiter, hashed, a, b, first, where), (nx, ny, ax, ay, bx, by, jn, jt) in zip(
             places.tolist(), touches.tolist(), strict=True
         ):
-            joined = JOINED in (kind[i] for i in (a, b) if i >= 0)
-            self._impulses[arbiter, hashed] = self._stamp, jn, jt
+            # Chipmunk uses an arbiter again for other shapes.
+            key = arbiter, hashed, *(int(self._addresses[i]) if i >= 0 else -1 for i in (a, b))
+            self._impulses[key] = self._stamp, jn, jt
+            if JOINED in (kind[i] for i in (a, b) if i >= 0):
+                continue
             # What a contact keeps has the last steps' impulse in it, of which Chipmunk has applied a share.
-            share = (1.0 if joined else 0.0) if first else ratio
-            if share != 1.0 and (arbiter, hashed) in kept:
-                _, kn, kt = kept[arbiter, hashed]
-                jn, jt = jn + (share - 1.0) * kn, jt + (share - 1.0) * kt
-            x, y = jn * nx - jt * ny, jn * ny + jt * nx
-            relative = 0.0
-            for i, rx, ry, sign in ((a, ax, ay, -1.0), (b, bx, by, 1.0)):
-                u, v, w = mean[i].tolist() if i >= 0 else (0.0, 0.0, 0.0)
-                done = sign * (x * (u - w * ry) + y * (v + w * rx))
-                if i >= 0 and kind[i] in (LOOSE, TIED):
-                    work[i] += done
-                    relative += done
-                elif i < 0 or kind[i] == HELD:
-                    by_others -= done
-                    relative += done
-            if joined:
-                by_others += relative
-            else:
-                lost -= relative
+            share = 0.0 if first else ratio
+            early, late = (jn, jt), (0.0, 0.0)
+            if share != 1.0 and key in kept:
+                _, kn, kt = kept[key]
+                early = jn + (share - 1.0) * kn, jt + (share - 1.0) * kt
+            if any(i >= 0 and in_parts[i] for i in (a, b)):
+                late = jn - motion.begun[where][0], jt - motion.begun[where][1]
+                early = early[0] - late[0], early[1] - late[1]
+            for velocity, (n, t) in ((motion.mean, early), (motion.last, late)):
+                x, y = n * nx - t * ny, n * ny + t * nx
+                for i, rx, ry, sign in ((a, ax, ay, -1.0), (b, bx, by, 1.0)):
+                    u, v, w = velocity[i].tolist() if i >= 0 else (0.0, 0.0, 0.0)
+                    done = sign * (x * (u - w * ry) + y * (v + w * rx))
+                    lost -= done
+                    if i >= 0 and kind[i] in (LOOSE, TIED):
+                        work[i] += done
+                    else:
+                        by_others -= done
         # Chipmunk keeps contacts for some steps in which shapes do not touch.
         oldest = self._stamp - self._space.collision_persistence
         self._impulses = {key: one for key, one in kept.items() if one[0] >= oldest} | self._impulses

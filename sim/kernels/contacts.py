@@ -12,7 +12,6 @@ which Chipmunk finds them depends on what its collision tree has been through.
 import math
 
 from sim.chipmunk import (
-    ANGLE,
     ARBITER_BODY_A,
     ARBITER_BODY_B,
     ARBITER_CONTACTS,
@@ -59,10 +58,10 @@ from sim.kernels.layout import (
     EARLIER,
     FRICTION,
     GAP,
+    HALF,
     HASH,
     INDEX_A,
     INDEX_B,
-    LOOSE_AT,
     LOOSE_START,
     NORMAL,
     OTHER_START,
@@ -134,6 +133,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                     contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = 0.0, 0.0
                 touch[CACHED], touch[CACHED + 1] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE]
                 touch[EARLIER], touch[EARLIER + 1] = 0.0, 0.0
+                touch[HALF], touch[HALF + 1] = meet(p, touch)
                 load_loose(touch, floats(other, BODY_WORDS))
                 for row in range(2):
                     touch[OTHER_START + row] = other_velocity(c, p, touch, row)
@@ -141,6 +141,9 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                     contact[CONTACT_NORMAL_MASS] = -1.0
                     astray += 1
                     continue
+                for axis in range(2):
+                    contact[CONTACT_R1 + axis] = touch[ARM_A + axis]
+                    contact[CONTACT_R2 + axis] = touch[ARM_B + axis]
                 contact[CONTACT_NORMAL_MASS] = 0.0
                 contact[CONTACT_TANGENT_MASS] = 0.0
                 count += 1
@@ -183,9 +186,8 @@ def came_from_elsewhere(c, t, place, touch, slop):  # type: ignore[no-untyped-de
 
 @kernel
 def load_loose(touch, b):  # type: ignore[no-untyped-def]
-    """Note how and where the other body of a contact is."""
+    """Note how fast the other body of a contact is."""
     touch[LOOSE_START], touch[LOOSE_START + 1], touch[LOOSE_START + 2] = b[VX], b[VX + 1], b[SPIN]
-    touch[LOOSE_AT], touch[LOOSE_AT + 1], touch[LOOSE_AT + 2] = b[X], b[X + 1], b[ANGLE]
 
 
 @kernel
@@ -195,6 +197,31 @@ def distance(place, touch):  # type: ignore[no-untyped-def]
     x = b[X] + touch[ARM_B] - a[X] - touch[ARM_A]
     y = b[X + 1] + touch[ARM_B + 1] - a[X + 1] - touch[ARM_A + 1]
     return touch[NORMAL] * x + touch[NORMAL + 1] * y
+
+
+@kernel
+def meet(place, touch):  # type: ignore[no-untyped-def]
+    """Have a contact act on both bodies at one point, halfway between those on their surfaces; returns half that way.
+
+    Opposite impulses at two points are a couple, friction's where surfaces overlap: angular momentum from nowhere.
+    """
+    a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
+    x = 0.5 * (b[X] + touch[ARM_B] - a[X] - touch[ARM_A])
+    y = 0.5 * (b[X + 1] + touch[ARM_B + 1] - a[X + 1] - touch[ARM_A + 1])
+    touch[ARM_A], touch[ARM_A + 1] = touch[ARM_A] + x, touch[ARM_A + 1] + y
+    touch[ARM_B], touch[ARM_B + 1] = touch[ARM_B] - x, touch[ARM_B + 1] - y
+    return x, y
+
+
+@kernel
+def part_points(t):  # type: ignore[no-untyped-def]
+    """Give the contacts that Chipmunk found its own points of the two surfaces again."""
+    places, touches = views.places(t), views.touches(t)
+    for k in range(t[at.CONTACTS] - t[at.NEAR]):
+        contact, touch = floats(places[k, WHERE], CONTACT_WORDS), touches[k]
+        for axis in range(2):
+            contact[CONTACT_R1 + axis] -= touch[HALF + axis]
+            contact[CONTACT_R2 + axis] += touch[HALF + axis]
 
 
 @kernel
@@ -208,6 +235,7 @@ def kept(place, touch, h):  # type: ignore[no-untyped-def]
 @kernel
 def hand_back(t):  # type: ignore[no-untyped-def]
     """Undo what `collect` did to the contacts."""
+    part_points(t)
     places = views.places(t)
     for k in range(t[at.CONTACTS]):
         contact = floats(places[k, WHERE], CONTACT_WORDS)

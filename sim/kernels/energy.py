@@ -41,6 +41,8 @@ from sim.kernels.inertia import moment_of
 from sim.kernels.kinematics import impulses, rates
 from sim.kernels.layout import (
     BETA,
+    BODY_A,
+    BODY_B,
     CACHED,
     INERTIA_I,
     INERTIA_M,
@@ -51,11 +53,14 @@ from sim.kernels.layout import (
     MOVE,
     NEXT_MOVE,
     OTHER_START,
+    OWNER_A,
+    OWNER_B,
     SPREAD_IMPULSE,
     STEP,
     WHERE,
     WHOLE_RATIO,
 )
+from sim.kernels.noted import note_work
 from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, kernel
 
@@ -122,13 +127,14 @@ def close(c, t):  # type: ignore[no-untyped-def]
         if after_step != 0.0:
             of_outside, of_contacts = work_at(t, end)
             less, bearing = less + 0.5 * after_step * of_outside, bearing + 0.5 * after_step * of_contacts
-        if touching and abs(before_step + after_step) <= _ROUNDING:
-            # So have contacts that bear, in parts of a step; what bodies give and get stays what it is.
-            ledger[LEDGER_CONTACT] += bearing
-            ledger[LEDGER_NUMERICAL] -= bearing
-        elif touching and before_step > 0.0:
-            # Contacts that bear have done so, too; those of a blow, before whose first part bodies moved further, not.
-            less += min(bearing, 0.0)
+        even = abs(before_step + after_step) <= _ROUNDING
+        if touching and (even or before_step > 0.0):
+            # So have contacts that bear; those of a blow, before whose first part bodies moved further, have not. What
+            # bodies give and get stays what it is, as far as contacts have lost so much.
+            lost = bearing if even else max(min(bearing, 0.0), -ledger[LEDGER_CONTACT])
+            ledger[LEDGER_CONTACT] += lost
+            ledger[LEDGER_NUMERICAL] -= lost
+            less += 0.0 if even else min(bearing, 0.0) - lost
         outside -= less
         ledger[LEDGER_NUMERICAL] -= less
     given, arrived = contacts(c, t, start, end)
@@ -168,12 +174,15 @@ def contacts(c, t, start, end):  # type: ignore[no-untyped-def]
     given, arrived = 0.0, 0.0
     for k in range(t[at.CONTACTS]):
         place, touch = places[k], touches[k]
-        contact = floats(place[WHERE], CONTACT_WORDS)
+        contact, loose = floats(place[WHERE], CONTACT_WORDS), 0.0
         for row in range(2):
             total = contact[CONTACT_TANGENT_IMPULSE] if row == 1 else contact[CONTACT_NORMAL_IMPULSE]
             # Chipmunk scales what it applies of the cached impulse by the ratio of the steps, but not what it keeps.
             impulse = total + (ratio - 1.0) * touch[CACHED + row]
             own0, own1 = own_velocity(c, place, touch, row, start), own_velocity(c, place, touch, row, end)
-            given -= 0.5 * impulse * (touch[OTHER_START + row] + other_velocity(c, place, touch, row))
+            loose += 0.5 * impulse * (touch[OTHER_START + row] + other_velocity(c, place, touch, row))
             arrived += 0.5 * impulse * (own0 + own1)
+        given -= loose
+        if loose != 0.0 and (place[OWNER_A] == 0 or place[OWNER_B] == 0):
+            note_work(t, place[BODY_A] if place[OWNER_A] == 0 else place[BODY_B], loose)
     return given, arrived

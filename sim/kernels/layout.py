@@ -178,12 +178,12 @@ PLACE_WORDS = 8
 # A contact in `touches`: normal, arms, friction, surface velocity along the tangent, wanted normal velocity, bias,
 # cached impulses, velocities of the other side's point at the step's start (normal, tangent); velocity x, y and spin of
 # the loose body at the step's start, distance of the surfaces, impulses of the step's earlier parts, wanted velocity by
-# restitution alone, speed with which bodies struck each other in this contact, position x, y and angle of the
-# loose body at the step's start; how far the two shapes reach from their bodies' centres, and their restitution, for
-# contacts that come within the step.
+# restitution alone, speed with which bodies struck each other in this contact; how far the two shapes reach from their
+# bodies' centres, and their restitution, for contacts that come within the step; half the way from Chipmunk's point on
+# a to that on b.
 NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
-CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE, LOOSE_AT = 10, 12, 14, 17, 18, 20, 21, 22
-REACH, RETURN = 25, 27
-TOUCH_WORDS = 28
+CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE = 10, 12, 14, 17, 18, 20, 21
+REACH, RETURN, HALF = 22, 24, 25
+TOUCH_WORDS = 27
 # Distance of surfaces that cannot meet before contacts are found anew; it stays that, however they move [m].
 FAR = math.inf

@@ -58,14 +58,14 @@ def read(addresses, functions):  # type: ignore[no-untyped-def]
 def touching(addresses, order, kind):  # type: ignore[no-untyped-def]
     """Contacts of loose bodies, each once.
 
-    Returns rows of arbiter's address, hash, the two bodies' indices (-1 for one that is not listed) and whether their
-    shapes did not touch before, and rows of normal, arms, and normal and tangential impulse; ``order`` sorts the
-    addresses.
+    Returns rows of arbiter's address, hash, the two bodies' indices (-1 for one that is not listed), whether their
+    shapes did not touch before, and its own address, and rows of normal, arms, and normal and tangential impulse;
+    ``order`` sorts the addresses.
     """
     count = 0
     for fill in range(2):
         if fill == 1:
-            places, touches = np.empty((count, 5), np.int64), np.empty((count, 8))
+            places, touches = np.empty((count, 6), np.int64), np.empty((count, 8))
             count = 0
         for i in range(len(addresses)):
             if kind[i] != LOOSE and kind[i] != TIED:
@@ -83,6 +83,7 @@ def touching(addresses, order, kind):  # type: ignore[no-untyped-def]
                             p[0], p[1] = arbiter, integers(where, CONTACT_WORDS)[CONTACT_HASH]
                             p[2], p[3] = (i, j) if is_a else (j, i)
                             p[4] = 1 if w[ARBITER_STATE] & 0xFFFFFFFF == FIRST else 0
+                            p[5] = where
                             t[0], t[1] = f[ARBITER_NORMAL], f[ARBITER_NORMAL + 1]
                             for m in range(4):
                                 t[2 + m] = contact[CONTACT_R1 + m]

@@ -14,6 +14,8 @@ be left behind. Nothing either where the average-acceleration rule comes from th
 moves so soon after a blow is faster than whole steps resolve, and half a whole step of it tears stiff joints open.
 """
 
+import math
+
 from sim.chipmunk import BODY_WORDS, X
 from sim.kernels import layout as at
 from sim.kernels import views
@@ -70,19 +72,33 @@ def carry_on(t, i, x, y, turn):  # type: ignore[no-untyped-def]
 def keep_moment(t, places):  # type: ignore[no-untyped-def]
     """Have a free structure's bodies the same angular momentum at ``places`` as where they are, with their velocities.
 
-    Places are shifted for it, each across its body's velocity u relative to the centre of mass, by λ |u|; that keeps
-    the centre where it is. With D how far bodies are from their ``places``, λ = Σ m D×u / Σ m u²; by Cauchy's
-    inequality the shifts are no more than D, in the root of the mean square weighed by mass.
+    Places are shifted for it, all alike so that their centre of mass is on the line along which it moves, and each
+    across its body's velocity u relative to that centre, by λ |u|, which leaves the centre where it is. With D how far
+    bodies are from their ``places``, λ = Σ m D×u / Σ m u²; by Cauchy's inequality the shifts are no more than D, in the
+    root of the mean square weighed by mass.
     """
     body_at, moving, velocity = views.body_at(t), t[at.MOVING], views.per_body(t, at.LAST_VELOCITY)
-    _, _, vx, vy, _ = rigid_motion(t, velocity)
-    missing, square = 0.0, 0.0
+    cx, cy, vx, vy, _ = rigid_motion(t, velocity)
+    missing, square, mass, x, y = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)
         u, v, m = velocity[i, 0] - vx, velocity[i, 1] - vy, mass_of(b)
         missing += m * ((b[X] - places[i, 0]) * v - (b[X + 1] - places[i, 1]) * u)
         square += m * (u * u + v * v)
+        mass, x, y = mass + m, x + m * places[i, 0], y + m * places[i, 1]
     share = missing / square if square > 0.0 else 0.0
+    x, y = way_to_line(x / mass, y / mass, cx, cy, vx, vy)
     for i in range(moving):
-        places[i, 0] += share * (velocity[i, 1] - vy)
-        places[i, 1] -= share * (velocity[i, 0] - vx)
+        places[i, 0] += x + share * (velocity[i, 1] - vy)
+        places[i, 1] += y - share * (velocity[i, 0] - vx)
+
+
+@kernel
+def way_to_line(x, y, u, v, vx, vy):  # type: ignore[no-untyped-def]
+    """The shortest way from x, y to the line on which what is at u, v moves with the velocity vx, vy."""
+    speed = math.hypot(vx, vy)
+    if speed == 0.0:
+        return 0.0, 0.0
+    dx, dy = vx / speed, vy / speed
+    across = (v - y) * dx - (u - x) * dy
+    return -across * dy, across * dx

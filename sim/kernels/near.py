@@ -51,6 +51,7 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.lengths import LONGEST_PART
+from sim.kernels.noted import IN_PARTS, LOOSE_WORDS
 from sim.kernels.owners import home, unite
 from sim.kernels.rows import own_velocity
 from sim.memory import call_notice, floats, kernel
@@ -185,13 +186,14 @@ def fall_behind(head, others, pushes, free):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def let_go(head, others, pushes, begun, free):  # type: ignore[no-untyped-def]
+def let_go(head, others, pushes, begun, free, rows):  # type: ignore[no-untyped-def]
     """Before the last part, put bodies that were near but not touched back to how they would be without the group."""
     for i in range(len(others)):
         if is_only_near(head, others[i]):
             b = floats(others[i], BODY_WORDS)
             put(others[i], begun[i, 0], begun[i, 1], begun[i, 2])
             b[VX], b[VX + 1], b[SPIN] = free[i, 0], free[i, 1], free[i, 2]
+            floats(rows[i], LOOSE_WORDS)[IN_PARTS], rows[i] = math.nan, 0
             for axis in range(3):
                 pushes[i, axis] = 0.0
             c = head

@@ -7,6 +7,8 @@ When a step begins, Chipmunk has moved the bodies, and taken their pseudo-veloci
 step ends.
 """
 
+import numpy as np
+
 from sim.chipmunk import (
     ANGLE,
     ARBITER_CONTACTS,
@@ -15,6 +17,7 @@ from sim.chipmunk import (
     ARBITERS_OF_SPACE,
     BIAS_VX,
     BODY_FULL_WORDS,
+    BODY_WORDS,
     CONSTRAINT_SPACE,
     CONSTRAINT_WORDS,
     CONSTRAINTS_OF_SPACE,
@@ -26,6 +29,7 @@ from sim.chipmunk import (
     LIST_COUNT,
     LIST_ITEMS,
     LIST_WORDS,
+    MASS_INVERSE,
     MOVING_BODIES,
     SPACE_STAMP,
     SPACE_WORDS,
@@ -34,6 +38,7 @@ from sim.chipmunk import (
     X,
 )
 from sim.kernels import layout as at
+from sim.kernels.inertia import mass_of, moment_of
 from sim.memory import call_notice, floats, integers, kernel
 
 #: Words of the table: the step that was noted, how many structures have begun it and not ended it, the step after which
@@ -46,11 +51,16 @@ LOOSE, LOOSE_COUNT, STOCK, STOCK_COUNT, STOCK_NUMBERS, CONTACTS, CONTACTS_ROOM, 
 NOTES_WORDS = 17
 #: A loose body's row: its address; x, y, angle, the six words of its transform, and pseudo-velocities at the end of the
 #: last step; velocities and x, y, angle when this one has moved it.
-PLACE, PUSH, SPEED, MOVED, LOOSE_WORDS = 1, 10, 13, 16, 19
+#: From there on: the last step in which structures did work on it, and that work [J]; the last step that it went
+#: through in parts, where they began, what it was given on going back to when it touched [J], for how long forces act
+#: in them [s], the way that they do so along, and velocities at the start of the last one.
+PLACE, PUSH, SPEED, MOVED = 1, 10, 13, 16
+WORKED, WORK, IN_PARTS, BEGUN, GIVEN, SPAN, WAY, LAST, LOOSE_WORDS = 19, 20, 21, 22, 25, 26, 27, 30, 33
 #: Of own constraints: address of their first number, and how many.
 STOCK_WORDS = 2
-#: Of a contact: its address, and its normal and tangential impulse.
-CONTACT_ROW = 3
+#: Of a contact: its address, its normal and tangential impulse, and those that parts of a step began with, if either of
+#: its bodies went through any.
+CONTACT_ROW = 5
 
 
 @kernel
@@ -117,6 +127,91 @@ def is_outdated(notes, space):  # type: ignore[no-untyped-def]
     for i in range(len(arbiters)):
         contacts += integers(arbiters[i], ARBITER_WORDS)[ARBITER_COUNT] & 0xFFFFFFFF
     return contacts > notes[CONTACTS_ROOM]
+
+
+@kernel
+def row_of(t, body):  # type: ignore[no-untyped-def]
+    """Where the row of a loose body lies."""
+    notes = integers(t[at.NOTES], NOTES_WORDS)
+    row = notes[LOOSE]
+    for _ in range(notes[LOOSE_COUNT]):
+        if integers(row, 1)[0] == body:
+            return row
+        row += 8 * LOOSE_WORDS
+    return 0
+
+
+@kernel
+def note_work(t, body, work):  # type: ignore[no-untyped-def]
+    """Note work that a structure does on a loose body [J]."""
+    row, stamp = row_of(t, body), integers(t[at.NOTES], NOTES_WORDS)[STAMP]
+    if row != 0:
+        r = floats(row, LOOSE_WORDS)
+        r[WORK] = work + (r[WORK] if r[WORKED] == stamp else 0.0)
+        r[WORKED] = stamp
+
+
+@kernel
+def note_parts(t, bodies):  # type: ignore[no-untyped-def]
+    """Note that the step of these bodies is taken in parts, and where the dynamic ones are; returns their rows."""
+    rows, stamp = np.zeros(len(bodies), np.int64), integers(t[at.NOTES], NOTES_WORDS)[STAMP]
+    for i in range(len(bodies)):
+        b = floats(bodies[i], BODY_WORDS)
+        if b[MASS_INVERSE] > 0.0:
+            rows[i] = row_of(t, bodies[i])
+            r = floats(rows[i], LOOSE_WORDS)
+            r[IN_PARTS], r[BEGUN], r[BEGUN + 1], r[BEGUN + 2] = stamp, b[X], b[X + 1], b[ANGLE]
+            r[GIVEN], r[SPAN], r[WAY], r[WAY + 1], r[WAY + 2] = 0.0, 0.0, 0.0, 0.0, 0.0
+    return rows
+
+
+@kernel
+def note_given(rows, bodies, way):  # type: ignore[no-untyped-def]
+    """Add the bodies' kinetic energies to what they were given, ``way`` times."""
+    for i in range(len(bodies)):
+        if rows[i] != 0:
+            r, b = floats(rows[i], LOOSE_WORDS), floats(bodies[i], BODY_WORDS)
+            square = mass_of(b) * (b[VX] * b[VX] + b[VX + 1] * b[VX + 1]) + moment_of(b) * b[SPIN] * b[SPIN]
+            r[GIVEN] += 0.5 * way * square
+
+
+@kernel
+def note_struck(t, arbiter):  # type: ignore[no-untyped-def]
+    """Note the impulses that the contacts of an arbiter have when parts begin."""
+    notes, w = integers(t[at.NOTES], NOTES_WORDS), integers(arbiter, ARBITER_WORDS)
+    for k in range(w[ARBITER_COUNT] & 0xFFFFFFFF):
+        where = w[ARBITER_CONTACTS] + CONTACT_BYTES * k
+        for i in range(notes[CONTACTS_COUNT]):
+            row = notes[CONTACTS] + 8 * CONTACT_ROW * i
+            if integers(row, 1)[0] == where:
+                contact, r = floats(where, CONTACT_WORDS), floats(row, CONTACT_ROW)
+                r[3], r[4] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_NORMAL_IMPULSE + 1]
+
+
+@kernel
+def note_last(rows, bodies, h):  # type: ignore[no-untyped-def]
+    """Note the velocities at the start of the last part, in which forces act for a time ``h``."""
+    for i in range(len(bodies)):
+        if rows[i] != 0:
+            r, b = floats(rows[i], LOOSE_WORDS), floats(bodies[i], BODY_WORDS)
+            r[LAST], r[LAST + 1], r[LAST + 2] = b[VX], b[VX + 1], b[SPIN]
+            note_way(rows[i], bodies[i], 0.5 * h)
+
+
+@kernel
+def note_ways(rows, bodies, h):  # type: ignore[no-untyped-def]
+    """Add the ways that bodies go in a time ``h`` to those along which forces act."""
+    for i in range(len(bodies)):
+        if rows[i] != 0:
+            note_way(rows[i], bodies[i], h)
+
+
+@kernel
+def note_way(row, body, h):  # type: ignore[no-untyped-def]
+    """The same for one body."""
+    r, b = floats(row, LOOSE_WORDS), floats(body, BODY_WORDS)
+    r[SPAN], r[WAY], r[WAY + 1] = r[SPAN] + h, r[WAY] + h * b[VX], r[WAY + 1] + h * b[VX + 1]
+    r[WAY + 2] += h * b[SPIN]
 
 
 @kernel

@@ -36,6 +36,8 @@ from sim.kernels import views
 from sim.kernels.bodies import move, put
 from sim.kernels.layout import BODY_A, BODY_B, CACHED, LOOSE_START, OWNER_A, OWNER_B, STEP, WHOLE_RATIO
 from sim.kernels.links import MOST_LINKED, reach
+from sim.kernels.moves import way_to_line
+from sim.kernels.noted import note_struck
 from sim.kernels.rows import push_loose
 from sim.memory import floats, integers, kernel
 
@@ -129,7 +131,7 @@ def release(head, others):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def struck_besides(others, pushes):  # type: ignore[no-untyped-def]
+def struck_besides(head, others, pushes):  # type: ignore[no-untyped-def]
     """Split off the changes of those that touch something besides the group; what contacts gave is among them."""
     struck = np.zeros((len(others), 3))
     for i in range(len(others)):
@@ -138,6 +140,7 @@ def struck_besides(others, pushes):  # type: ignore[no-untyped-def]
             w = integers(arbiter, ARBITER_WORDS)
             # A group has set the masses of its own contacts to zero.
             if w[ARBITER_COUNT] & 0xFFFFFFFF and floats(w[ARBITER_CONTACTS], CONTACT_WORDS)[CONTACT_NORMAL_MASS] != 0.0:
+                note_struck(views.control(head), arbiter)
                 for axis in range(3):
                     struck[i, axis] += pushes[i, axis]
                     pushes[i, axis] = 0.0
@@ -182,14 +185,6 @@ def is_at(t, body, count):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def return_linked(head, others, begun, whole):  # type: ignore[no-untyped-def]
-    """Put those that only constraints link back to where they were, with what the parts moved them by still to come."""
-    for i in range(len(others)):
-        if floats(others[i], BODY_WORDS)[MASS_INVERSE] > 0.0 and not touched(head, others[i]):
-            delay(others[i], begun[i], whole)
-
-
-@kernel
 def delay(body, place, whole):  # type: ignore[no-untyped-def]
     """Put a body back to ``place``; the next ``whole`` step moves it to where it is by a pseudo-velocity."""
     b = floats(body, BODY_FULL_WORDS)
@@ -215,6 +210,19 @@ def put_back(body, place, h, whole):  # type: ignore[no-untyped-def]
     """Put a body back to ``place``, from where the next ``whole`` step moves it to what is a part ``h`` from here."""
     delay(body, place, whole)
     shorten(body, h, whole)
+
+
+@kernel
+def show(body, place, h, whole):  # type: ignore[no-untyped-def]
+    """Put a loose body back as `put_back` does, to where it has the same angular momentum as where it is.
+
+    That is on the line along which it moves, at the point nearest to its ``place``, which is changed.
+    """
+    b = floats(body, BODY_WORDS)
+    x, y = way_to_line(place[0], place[1], b[X], b[X + 1], b[VX], b[VX + 1])
+    place[0] += x
+    place[1] += y
+    put_back(body, place, h, whole)
 
 
 @kernel

@@ -14,7 +14,7 @@ from sim.kernels import views
 from sim.kernels.bodies import load_velocities, move, write
 from sim.kernels.commit import commit
 from sim.kernels.complement import relative
-from sim.kernels.contacts import SETTLE, kept, space_slop
+from sim.kernels.contacts import SETTLE, kept, meet, space_slop
 from sim.kernels.energy import close
 from sim.kernels.guard import close_from_below
 from sim.kernels.inertia import add_inertia, mass_of, moment_of, weigh
@@ -92,6 +92,7 @@ def begin_part(head, others, pushes):  # type: ignore[no-untyped-def]
             if touch[GAP] >= FAR:
                 touch[WANTED] = 0.0
                 continue
+            meet(place, touch)
             for row in range(2):
                 touch[OTHER_START + row] = other_velocity(c, place, touch, row)
             keep = min(slop, max(kept(place, touch, settings[WHOLE_STEP]), _PRESSED * slop))

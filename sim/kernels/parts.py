@@ -39,7 +39,6 @@ from sim.kernels.layout import (
     BLOW,
     CACHED,
     EARLIER,
-    LOOSE_AT,
     MOVE,
     NEXT_MOVE,
     PUSH,
@@ -56,14 +55,13 @@ from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_
 from sim.kernels.moves import keep_moment
 from sim.kernels.near import fall_behind, hand_over, let_go, look, stand_in
 from sim.kernels.newton import restart
+from sim.kernels.noted import BEGUN, note_given, note_last, note_parts, note_way, note_ways, row_of
 from sim.kernels.others import (
     others_of,
     put_back,
     release,
-    return_linked,
-    shorten,
+    show,
     struck_besides,
-    which,
 )
 from sim.kernels.part import begin_part, end_part, renew, scale_all
 from sim.kernels.settle import finite, settle_bounces
@@ -77,14 +75,16 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
     free = np.empty((len(others), 3))
     load_velocities(others, free)
     pushes = release(head, others)
-    struck = struck_besides(others, pushes)
+    struck = struck_besides(head, others, pushes)
     fall_behind(head, others, pushes, free)
     begun = np.empty((len(others), 3))
     load_positions(others, begun)
     late = lateness(head)
-    go_back(head, others, pushes, late)
     leader = views.control(head)
-    settings = views.settings(leader)
+    settings, rows = views.settings(leader), note_parts(leader, others)
+    note_given(rows, others, -1.0)
+    go_back(head, others, pushes, late)
+    note_given(rows, others, 1.0)
     whole, span = settings[WHOLE_STEP], settings[WHOLE_STEP] + late
     moves, steps = part_lengths(settings, span)
     open_step(head, late, moves, steps)
@@ -98,6 +98,7 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
         h = moves[i]
         look(head)
         load_velocities(others, before)
+        note_ways(rows, others, 0.5 * steps[i])
         begin_part(head, others, pushes)
         prepare_links(links, h)
         c = head
@@ -113,20 +114,20 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
         while c != 0:
             t = views.control(c)
             if t[at.FAULT] >= 0 or not finite(t):
-                let_go(head, others, pushes, begun, free)
-                return_linked(head, others, begun, whole)
+                let_go(head, others, pushes, begun, free, rows)
                 return converged
             c = t[at.NEXT]
         # In a whole step it would be so many times as much.
         lost += whole / h * end_part(head, others, before, pushes, moves[i + 1], steps[i + 1])
+        note_ways(rows, others, 0.5 * steps[i])
         grow_older(head, 0.0, h)
     if lost < OVER * whole * settings[BLOW] or is_over(head):
         forget(head)
     look(head)
-    let_go(head, others, pushes, begun, free)
+    let_go(head, others, pushes, begun, free, rows)
+    note_last(rows, others, steps[-1])
     begin_part(head, others, pushes)
     prepare_links(links, moves[-1])
-    return_linked(head, others, begun, whole)
     c = head
     while c != 0:
         views.control(c)[at.PARTS], views.control(c)[at.PUSHED_APART] = len(moves), 0
@@ -193,21 +194,17 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
     if t[at.AHEAD] == 1:
         others, c = others_of(head), head
         while c != 0:
-            one = views.control(c)
-            places, touches = views.places(one), views.touches(one)
-            for k in range(one[at.CONTACTS]):
-                i = which(others, places[k])
-                if i >= 0:
-                    put_back(others[i], touches[k, LOOSE_AT : LOOSE_AT + 3], h, whole)
-                    others[i] = 0
-            one[at.AHEAD] = 0
-            c = one[at.NEXT]
+            views.control(c)[at.AHEAD] = 0
+            c = views.control(c)[at.NEXT]
         for i in range(len(others)):
-            if others[i] != 0 and floats(others[i], BODY_WORDS)[MASS_INVERSE] > 0.0:
-                shorten(others[i], h, whole)
-            elif others[i] != 0:
+            b = floats(others[i], BODY_WORDS)
+            if b[MASS_INVERSE] > 0.0:
+                row = row_of(t, others[i])
+                note_way(row, others[i], 0.5 * views.settings(t)[STEP])
+                show(others[i], floats(row + 8 * BEGUN, 3), h, whole)
+            else:
                 # Held, and moved evenly.
-                b, ahead = floats(others[i], BODY_WORDS), whole - h
+                ahead = whole - h
                 move(others[i], -ahead * b[VX], -ahead * b[VX + 1], -ahead * b[SPIN])
     if t[at.FAULT] < 0:
         # What the next step is to find where it was: at the place from which plain velocities would have led there.

@@ -7,7 +7,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blow import takes_parts
 from sim.kernels.bodies import arrive, depart, take_in, write
-from sim.kernels.contacts import collect, hand_back
+from sim.kernels.contacts import collect, hand_back, part_points
 from sim.kernels.guard import choose_scheme
 from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import take_up
@@ -72,8 +72,8 @@ def take_over(c, t):  # type: ignore[no-untyped-def]
     """Take over the contacts of this step."""
     clear(views.per_body(t, at.CONTACT_IMPULSE))
     collect(c, t)
-    if t[at.MISSED] > 0 or t[at.ASTRAY] > 0:
-        # Python makes room, and turns contacts the right way; all are collected anew.
+    while t[at.MISSED] > 0 or t[at.ASTRAY] > 0:
+        # Python makes room, and turns contacts the right way; all are collected anew, those too that there were.
         hand_back(t)
         t[at.BROKE] = 0
         call_notice(t[at.NOTICE], t[at.KEY])
@@ -156,6 +156,7 @@ def finish(c):  # type: ignore[no-untyped-def]
     if t[at.FAULT] >= 0:
         roll_back(t)
     note_pushes(t)
+    part_points(t)
     drop(t)
     note_end(t)
     t[at.HEAD], t[at.NEXT] = 0, 0

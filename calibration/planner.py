@@ -10,7 +10,9 @@ from scene import Scene
 from sim import AVERAGE_ACCELERATION, MemberModel, Model
 
 _HINGES = (3, 5)
-_LOBATTO = tuple(
+# Joints and fibres where a section yields bit by bit; from so many joints on they are drawn to where moments peak, for
+# less of an error. Fewer would leave pieces so long that frequencies are off by per cents.
+_FIBRES = tuple(
     (joints, fibres)
     for joints, counts in {
         4: (8,),
@@ -27,6 +29,7 @@ _LOBATTO = tuple(
     }.items()
     for fibres in counts
 )
+_FEWEST_GRADED = 8
 _EQUAL = ((9, 8), (17, 12), (33, 16))
 # Where more joints and fibres no longer help it may be the step: fine models again, stepped finer.
 _FINE_STEPPING = ((1.0 / 240.0, 2), (1.0 / 1000.0, 4))
@@ -75,15 +78,20 @@ def candidates(scene: Scene, plans: Mapping[str, MemberPlan]) -> list[Model]:
         ]
     else:
         models = [Model("lobatto", joints, law) for joints in _HINGES for law in ("elastic-plastic", "interaction")]
-        models += [Model("lobatto", joints, "fibre", fibres) for joints, fibres in _LOBATTO]
+        models += [Model(_rule(joints), joints, "fibre", fibres) for joints, fibres in _FIBRES]
         models += [Model("equal", joints, "fibre", fibres) for joints, fibres in _EQUAL]
         models += [
-            Model("lobatto", joints, "fibre", fibres, dt, iterations)
+            Model(_rule(joints), joints, "fibre", fibres, dt, iterations)
             for dt, iterations in _FINE_STEPPING
             for joints, fibres in _FINE
         ]
         models = [replace(model, members=_fixed(plans)) for model in models]
     return sorted(models, key=lambda model: relative_cost(model, scene.members))
+
+
+def _rule(joints: int) -> str:
+    """The rule that goes with so many joints of a member that yields bit by bit."""
+    return "graded" if joints >= _FEWEST_GRADED else "lobatto"
 
 
 def _fixed(plans: Mapping[str, MemberPlan]) -> dict[str, MemberModel]:
@@ -128,8 +136,11 @@ def cheaper(model: MemberModel, plan: MemberPlan) -> list[MemberModel]:
         return [MemberModel("lobatto", joints, model.law) for joints in (ELASTIC_JOINTS, 4, 6) if joints < model.joints]
     if model.law != "fibre":
         return []
-    rungs = [(joints, fibres) for joints, fibres in _LOBATTO if joints < model.joints and fibres <= model.fibres]
-    lower = [MemberModel("lobatto", joints, "fibre", fibres) for joints, fibres in (rungs[-4:-3] + rungs[-2:-1])]
+    rungs = [(joints, fibres) for joints, fibres in _FIBRES if joints < model.joints and fibres <= model.fibres]
+    lower = [
+        MemberModel(_rule(joints) if model.rule == "graded" else "lobatto", joints, "fibre", fibres)
+        for joints, fibres in (rungs[-4:-3] + rungs[-2:-1])
+    ]
     return [MemberModel("lobatto", _HINGES[0], "elastic-plastic"), *lower]
 
 

@@ -5,6 +5,10 @@ energy stays convex. How far the node goes for a unit of w changes as joints yie
 fibres yield and unload by turns and as the structure vibrates. So the driver goes by what the node has done for w in
 the last while, and makes up little by little for what it is off its way: a driver that followed every jump would shake
 the structure. A force on the node alone is the pattern for which w is the node's own displacement.
+
+What it makes up for is smoothed twice over a time T. A vibration of ω is a quarter of a turn behind w, and w, in which
+what is off adds up, a quarter behind that: unsmoothed, the driver feeds every vibration, by more than what a short step
+damps of it. Smoothing turns it by up to half a turn more, and the driver damps all of ω > 1 / T.
 """
 
 from __future__ import annotations
@@ -17,8 +21,9 @@ from sim.members import Assembly
 from sim.pieces import NodePoint
 from sim.step_back import SolverError
 
-#: Time over which the node's ways are remembered, and over which it is brought back to where it is wanted [s].
-_MEMORY, _RETURN = 0.5, 0.2
+#: Time over which the node's ways are remembered, over which it is brought back to where it is wanted, and over which
+#: what it is off is smoothed [s].
+_MEMORY, _RETURN, _SMOOTHED = 0.5, 0.25, 0.1
 #: How far off its way, in lengths of the whole way, the node has gone for good.
 _ASTRAY = 10.0
 
@@ -55,7 +60,7 @@ class LoadDriver:
         self._ratio = 0.0
         self._both = self._own = 0.0
         self._gap = 1e-9 * size**0.5
-        self._wanted = 0.0
+        self._wanted = self._once = self._behind = 0.0
         self.displacement = self.factor = self.way = 0.0
 
     def _take(self) -> None:
@@ -78,8 +83,7 @@ class LoadDriver:
             self._take()
         self._pattern = self._forces(dt)
         if self._ratio:
-            behind = self._wanted - self.displacement
-            ahead = wanted - self._wanted + min(1.0, dt / _RETURN) * behind
+            ahead = wanted - self._wanted + min(1.0, dt / _RETURN) * self._behind
             # The spring itself gives by as much as the loads need.
             self._gap = self._ratio * ahead + self.factor / self._stiffness
         self._wanted = wanted
@@ -96,12 +100,15 @@ class LoadDriver:
         before = self.displacement
         self.displacement = float((self._node.ahead(dt) - self._origin) @ self._direction)
         self.factor = self._structure.load_factor
-        off = abs(self.displacement - self._wanted)
-        if not off <= _ASTRAY * self._reach:
+        behind = self._wanted - self.displacement
+        if not abs(behind) <= _ASTRAY * self._reach:
             raise SolverError(
-                f"the pushed node has left its way of {self._reach:.4g} m by {off:.4g} m; take shorter steps or fewer "
-                "joints, or look for a structure that its loads carry away"
+                f"the pushed node has left its way of {self._reach:.4g} m by {abs(behind):.4g} m; take shorter steps "
+                "or fewer joints, or look for a structure that its loads carry away"
             )
+        new = 1.0 - math.exp(-dt / _SMOOTHED)
+        self._once += new * (behind - self._once)
+        self._behind += new * (self._once - self._behind)
         moved, worked = self.displacement - before, self._gap - self.factor / self._stiffness
         self.way += worked
         keep = math.exp(-dt / _MEMORY)

@@ -4,15 +4,11 @@ from scene import MemberEnd, Scene
 
 
 def moment_peaks(scene: Scene, name: str) -> tuple[bool, bool]:
-    """Whether the moments of a member peak at its start, and at its end.
+    """Whether the moments of a member peak at its start, and at its end: where an end is held against turning.
 
-    They do where an end is held against turning, but for members that are loaded along their way and held at both ends,
-    whose largest moment may be in the span.
+    The peak that a load along the member may have in its span is round, and wide beside those.
     """
     member = scene.members[name]
-    spans = not (_is_tip(scene, name, member.start) or _is_tip(scene, name, member.end))
-    if spans and any(load.member == name for load in scene.loads):
-        return False, False
     return _held(scene, name, member.start, "from"), _held(scene, name, member.end, "to")
 
 
@@ -24,10 +20,6 @@ def _others(scene: Scene, name: str, node: str) -> list[bool]:
         for end, at in (("from", other.start), ("to", other.end))
         if key != name and at == node
     ]
-
-
-def _is_tip(scene: Scene, name: str, node: str) -> bool:
-    return scene.nodes[node].support == "free" and not _others(scene, name, node)
 
 
 def _held(scene: Scene, name: str, node: str, end: MemberEnd) -> bool:

@@ -24,8 +24,9 @@ from sim.step_back import SolverError
 
 # Where inertia bears too much, a push takes longer, up to so many times.
 _LONGEST = 8.0
-# Share of a way over which the node is sped up, and slowed down.
-_EASE = 0.2
+# Shares of a way: over which the node is sped up, and slowed down; and over which it is seen what inertia bears, short
+# enough for a strut that gives way at once.
+_EASE, _SEEN = 0.2, 0.02
 # Before it turns or ends, a push waits until the node is this near to where it shall be, as a share of the whole way;
 # at most so long, as a share of the time that the way took.
 _NEAR, _LONGEST_WAIT = 1e-4, 0.5
@@ -177,7 +178,7 @@ def _push(
     planned = steps_a_leg * len(legs)
     way = float(np.abs(distances).max())
     driver = LoadDriver(assembly, scene.push.node, scene.push_direction(), way)
-    newton_before = assembly.structure.newton_steps
+    newton_before, unconverged_before = assembly.structure.newton_steps, assembly.structure.unconverged
     taken, factors, ways, kinetic, ends = [0.0], [0.0], [0.0], [0.0], [0]
     bearing: list[tuple[tuple[DuctileJoint, ...], np.ndarray]] = []
     seconds = 0.0
@@ -196,8 +197,8 @@ def _push(
             ways.append(driver.way)
             kinetic.append(structure.energy.kinetic)
             bearing.append((assembly.joints, structure.force))
-            if structure.unconverged > _MOST_UNCONVERGED * planned:
-                count, so_far = structure.unconverged, len(bearing)
+            count, so_far = structure.unconverged - unconverged_before, len(bearing)
+            if count > _MOST_UNCONVERGED * planned:
                 raise SolverError(
                     f"{count} of the first {so_far} steps found no solution; shorten them, or take fewer joints"
                 )
@@ -228,10 +229,10 @@ def _push(
 
 
 def _inertia(kinetic: np.ndarray, way: np.ndarray, ends: list[int], load: float) -> float:
-    """Kinetic energy gained or lost while speeds change, over the work of ``load`` on the way meanwhile."""
+    """Kinetic energy gained or lost on a bit of the way, over the work of ``load`` on it."""
     most = 0.0
     for first, last in itertools.pairwise(ends):
-        window = max(1, round(_EASE * (last - first)))
+        window = max(1, round(_SEEN * (last - first)))
         gained, worked = (
             np.abs(values[first + window : last + 1] - values[first : last + 1 - window])
             for values in (kinetic, load * way)

@@ -13,7 +13,10 @@ from capacity import InputError
 
 # k of a graded rule. Nearer to both ends a hinge that spreads as it hardens, or one in the span, is no longer seen
 # well, and the long pieces in the middle spoil natural frequencies.
-_DRAWN_TO_BOTH, _DRAWN_TO_ONE = 0.3, 0.5
+_DRAWN_TO_BOTH, _DRAWN_TO_ONE = 0.25, 0.5
+# Degree to which it is exact, if it has points enough, and how many fewer than points that is else. More would make
+# frequencies better still, but weigh the ends of short rules as even ones, and miss a hinge in the span by more.
+_GRADED_DEGREE, _FEWER = 7, 3
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ def graded(joints: int, *, start: bool = True, end: bool = True) -> Rule:
     x - k sin(2πx) / 2π, or to x - k sin(πx) / π where only the start is to have more, weights along with them: a share
     k of the sin² transformation of A. Sidi, A new variable transformation for numerical integration, Numerical
     Integration IV, ISNM 112 (1993) 359–373. Weights are then changed by the least share that makes the rule exact to
-    degree 3, and with it the elastic answer under loads at the ends and even loads.
+    degree n - 3, 7 at the most, and with it the elastic answer under loads at the ends and even loads.
 
     Raises ValueError for fewer than 6 joints.
     """
@@ -73,8 +76,8 @@ def graded(joints: int, *, start: bool = True, end: bool = True) -> Rule:
     points = even.points - drawn * np.sin(phase) / (turns * np.pi)
     points[[0, -1]] = 0.0, 1.0
     weights = even.weights * (1.0 - drawn * np.cos(phase))
-    powers = legendre.legvander(2.0 * points - 1.0, 3).T
-    missing = np.array([1.0, 0.0, 0.0, 0.0]) - powers @ weights
+    powers = legendre.legvander(2.0 * points - 1.0, min(_GRADED_DEGREE, joints - _FEWER)).T
+    missing = np.eye(len(powers))[0] - powers @ weights
     weights *= 1.0 + powers.T @ np.linalg.solve(powers * weights @ powers.T, missing)
     return Rule("graded", points, weights, np.zeros(joints, dtype=bool))
 

@@ -89,6 +89,33 @@ def test_heavy_nodes_are_pushed_slowly() -> None:
     assert sim.PACE.duration == pushes[0].duration < pushes[1].duration
 
 
+def strip() -> Scene:
+    """A strip of 4 Hz that a moment at its tip rolls up."""
+    nodes = {"A": (0.0, 0.0, "clamped"), "B": (1.0, 0.0, "free")}
+    moment, push = 'node = "B"\nmoment = -1.0', push_towards("B", (0, -1), 0.7)
+    return frame_scene(
+        nodes, [("A", "B")], push, [moment], section="rectangle 4x5 mm", material=STRONG, kinematics="large"
+    )
+
+
+def strut() -> Scene:
+    """Bent by 1/400 of its length, of perfect plasticity: past its largest load it loses a fifth of it at once."""
+    nodes = {"A": (0.0, 0.0, "pinned"), "M": (0.01, 2.0, "free"), "B": (0.0, 4.0, "roller-y")}
+    push = push_towards("B", (0, -1), 0.03)
+    return frame_scene(nodes, [("A", "M"), ("M", "B")], push, [down("B")], section="HEB 100", kinematics="large")
+
+
+@pytest.mark.parametrize(("scene", "short"), [(strip(), 1 / 500), (strut(), 1 / 240)], ids=["strip", "strut"])
+def test_what_vibrates_or_gives_way_at_once_is_pushed_alike_by_short_steps(scene: Scene, short: float) -> None:
+    """Within 1 % of the largest load at every hundredth of the way; short steps damp nothing of either."""
+    way = np.linspace(0.0, float(scene.push.distance), 101)
+    long_steps, short_steps = (
+        sim.push_over(scene, Model("graded", 9, "fibre", 16, dt=dt), way) for dt in (1 / 60, short)
+    )
+    off = np.abs(short_steps.load_at_distances - long_steps.load_at_distances).max()
+    assert off <= 0.01 * long_steps.load.max()
+
+
 @pytest.mark.parametrize("law", sim.LAWS)
 def test_joints_of_every_law_can_be_handed_over_as_json(law: str) -> None:
     table = joint_table(column("free", (1, 0), 0.01), Model("lobatto", 3, law))

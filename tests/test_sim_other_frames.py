@@ -80,6 +80,26 @@ def curve_of_stresses() -> str:
     return cantilever(of("rectangle 60x120 mm", curve), 2.0, 0.3, "large")
 
 
+def lean_to() -> str:
+    """A roof of 14° between columns of other heights, one pinned; dead load along it, then sway."""
+    nodes: dict[str, Place] = {
+        "A": (0.0, 0.0, "pinned"),
+        "B": (0.0, 3.0, "free"),
+        "C": (6.0, 4.5, "free"),
+        "D": (6.0, 0.0, "clamped"),
+    }
+    loads = ('member = "B-C"\nper_length = [0.0, -12e3]\nkind = "dead"', 'node = "B"\nforce = [-1.0, 0.0]')
+    members = dict.fromkeys(("A-B", "B-C", "D-C"), of("IPE 270", STEEL))
+    return frame(nodes, members, along("B", "[-1, 0]", 0.25), loads)
+
+
+def pulled() -> str:
+    """Half of N_pl in tension first; the cantilever then bends as a rope does."""
+    nodes: dict[str, Place] = {"A": (0.0, 0.0, "clamped"), "B": (2.2, 0.0, "free")}
+    pull = 'node = "B"\nforce = [9.2e5, 0.0]\nkind = "dead"'
+    return frame(nodes, {"A-B": of("HEB 200")}, along("B", "[0, -1]", 0.25), (pull,))
+
+
 CASES: dict[str, str] = {
     "tee": cantilever(of("T 150x150x10x15 mm"), 1.5, 0.12, "small"),
     "polygon": cantilever(of("polygon 0,0 120,0 120,20 70,20 70,160 50,160 50,20 0,20 mm"), 2.0, 0.15, "small"),
@@ -87,6 +107,8 @@ CASES: dict[str, str] = {
     "braced": braced(),
     "unequal": unequal(),
     "beam to and fro": beam_to_and_fro(),
+    "lean-to": lean_to(),
+    "pulled": pulled(),
 }
 
 

@@ -21,15 +21,19 @@ from sim.moment_peaks import moment_peaks
         (lobatto(5), 7),
         (lobatto(9), 15),
         (graded(6), 3),
-        (graded(9), 3),
-        (graded(9, end=False), 3),
+        (graded(9), 7),
+        (graded(9, end=False), 6),
+        (graded(12, end=False), 7),
         (radau(6, 0.05), 3),
         (radau(8, 0.1), 3),
     ],
     ids=lambda value: value.name if isinstance(value, Rule) else str(value),
 )
 def test_rules_integrate_polynomials(rule: Rule, degree: int) -> None:
-    """Gauss–Lobatto to degree 2n - 3; graded points, Radau points with Gauss points between to 3; equal pieces to 1."""
+    """Gauss–Lobatto to degree 2n - 3; Radau points with Gauss points between to 3; equal pieces to 1.
+
+    Graded points to n - 3, symmetric ones to the next odd number; to 7 at most.
+    """
     for power in range(degree + 1):
         assert rule.weights @ rule.points**power == pytest.approx(1.0 / (power + 1), rel=1e-12)
     assert abs(rule.weights @ rule.points ** (degree + 1) - 1.0 / (degree + 2)) > 1e-12
@@ -45,7 +49,7 @@ def test_graded_points_lie_nearer_to_the_peaks(joints: int, start: bool, end: bo
     assert np.all(rule.weights > 0.0)
     for peak, i in ((start, 0), (end, -1)):
         if peak:
-            assert rule.weights[i] < 0.75 * even.weights[i]
+            assert rule.weights[i] < 0.8 * even.weights[i]
     if not (start or end):
         assert np.array_equal(rule.points, even.points)
 
@@ -73,7 +77,7 @@ push = { node = "B", direction = [0, -1], distance = "1 mm" }
     peaks = {name: moment_peaks(scene, name) for name in scene.members}
     assert peaks == {
         "left": (True, True),
-        "right": (False, False),
+        "right": (True, False),
         "post": (False, True),
         "tip": (True, False),
     }

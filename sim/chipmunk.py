@@ -69,6 +69,8 @@ CONSTRAINT_CLASS, CLASS_BYTES = 0, 32
 CONSTRAINT_SPACE = 1
 CONSTRAINT_BODY_A, CONSTRAINT_BODY_B = 2, 3
 CONSTRAINT_NEXT_A, CONSTRAINT_NEXT_B = 4, 5
+# What Chipmunk calls when a step's impulses are final.
+POST_SOLVE = 11
 CONTROL = 13
 CONSTRAINT_WORDS = 15
 
@@ -112,7 +114,7 @@ def pivot(a: pymunk.Body, b: pymunk.Body) -> object:
     return lib.cpPivotJointNew2(a._body, b._body, (0.0, 0.0), (0.0, 0.0))
 
 
-def adopt(constraint: object, functions: np.ndarray, after_step: int) -> None:
+def adopt(constraint: object, functions: np.ndarray) -> None:
     """Make Chipmunk call ``functions`` for ``constraint``; `assign` must have given it something to work on by then.
 
     Parameters
@@ -121,11 +123,8 @@ def adopt(constraint: object, functions: np.ndarray, after_step: int) -> None:
         From `pivot`.
     functions : int64
         Addresses of preStep, applyCachedImpulse, applyImpulse and getImpulse; must outlive the constraint.
-    after_step : int
-        Address of a function (constraint, space) called when a step's impulses are final.
     """
     words(address(constraint), 1, np.int64)[CONSTRAINT_CLASS] = functions.ctypes.data
-    lib.cpConstraintSetPostSolveFunc(constraint, ffi.cast("cpConstraintPostSolveFunc", after_step))
 
 
 def assign(constraint: object, control: np.ndarray, index: int) -> None:

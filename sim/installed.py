@@ -120,6 +120,8 @@ def _constraints_fit() -> bool:
     fits &= fields[at.CONSTRAINT_SPACE] == address(space._space)
     fits &= after[at.CONSTRAINT_NEXT_A] == one and after[at.CONSTRAINT_NEXT_B] == two
     fits &= words(body_address(a), at.BODY_FULL_WORDS, np.int64)[at.CONSTRAINTS] == one
+    lib.cpConstraintSetPostSolveFunc(first._constraint, ffi.cast("cpConstraintPostSolveFunc", 73))
+    fits &= fields[at.POST_SOLVE] == 73
     space.remove(first, between)
     fits &= fields[at.CONSTRAINT_SPACE] == 0
     for constraint in one_of_each(a, b):

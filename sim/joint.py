@@ -106,8 +106,7 @@ class DuctileJoint(JointReadings):
     def _attach(self, a: pymunk.Body, b: pymunk.Body) -> None:
         """Become a constraint of Chipmunk's between two bodies."""
         self._init(a, b, chipmunk.pivot(a, b))
-        functions, after_step, _ = compiled_callbacks()
-        chipmunk.adopt(self._constraint, functions, after_step)
+        chipmunk.adopt(self._constraint, compiled_callbacks().functions)
 
     def __getstate__(self) -> dict[str, Any]:
         """For `pickle`, `copy` and `pymunk.Space.copy`: all attributes, with the structure and its plastic state."""

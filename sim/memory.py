@@ -15,8 +15,12 @@ from numba import njit, types
 from numba.extending import intrinsic
 from numba.np.arrayobj import make_array, populate_array
 
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 #: Compiles a function that only compiled functions call.
-kernel = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+kernel = njit(forceinline=False, **_OPTIONS)
+#: Compiles a function into those that call it: what is called in one place only, or for every joint or body. A call
+#: takes some fifty instructions.
+inlined = njit(forceinline=True, **_OPTIONS)
 
 WORD = ir.IntType(64)
 
@@ -45,14 +49,6 @@ def _of(kind: types.Type) -> Callable[..., Any]:
 
 #: Of an address and a number: so many float64, or int64, there.
 floats, integers = _of(types.float64), _of(types.int64)
-
-
-@kernel
-def clear(array):  # type: ignore[no-untyped-def]
-    """Set all of a two-dimensional array to 0, without what Numba adds to assignments of slices."""
-    for i in range(array.shape[0]):
-        for k in range(array.shape[1]):
-            array[i, k] = 0.0
 
 
 @intrinsic
@@ -90,6 +86,18 @@ def call_constraint(typing_context, function, constraint, h):  # type: ignore[no
         return context.get_dummy_value()
 
     return types.void(types.int64, types.int64, types.float64), generate
+
+
+@intrinsic
+def call_post_solve(typing_context, function, constraint, space):  # type: ignore[no-untyped-def]
+    """Call the C function at ``function`` with the addresses of a constraint and of its space."""
+
+    def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+        pointer = builder.inttoptr(args[0], ir.FunctionType(ir.VoidType(), [WORD] * 2).as_pointer())
+        builder.call(pointer, args[1:])
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * 3), generate
 
 
 #: Signature of both functions of a law: parameters, state, deformation, out.

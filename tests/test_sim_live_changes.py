@@ -127,3 +127,16 @@ def test_a_joint_to_a_body_of_another_space_is_refused() -> None:
     there.add(b)
     with pytest.raises(InputError, match="not in the space"):
         here.step(1 / 60)
+
+
+def test_what_a_user_has_called_after_a_step_is_called_for_every_joint() -> None:
+    """Also for the one that acts for its structure, whose own end of the step Chipmunk calls in the same way."""
+    case = chain(3)
+    called: list[int] = []
+    for joint in case.structure.joints:
+        joint.post_solve = lambda own, _: called.append(own.index)
+    case.space.step(1 / 60)
+    first = case.structure.energy
+    case.space.step(1 / 60)
+    assert called == [0, 1, 2, 0, 1, 2]
+    assert case.structure.energy != first

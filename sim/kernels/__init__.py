@@ -3,6 +3,7 @@
 | file | job |
 |---|---|
 | ``layout``, ``views`` | what lies where in the memory that kernels and `sim.structure` share |
+| ``bare`` | arrays as kernels hand them to each other |
 | ``kinematics``, ``inertia`` | deformations of the joints and their gradient; masses, implicit geometric stiffness |
 | ``blocks`` | the matrix: assembly, L D Lᵀ by 3 × 3 blocks, substitution |
 | ``residual``, ``newton`` | impulses of the joints: Newton's method with a line search |

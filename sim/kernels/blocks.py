@@ -5,11 +5,12 @@ It is factored as L D Lᵀ in the order and over the pattern that `sim.ordering`
 
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import clear
 from sim.kernels.layout import E_X, E_Y, HOLDS, INERTIA_I, INERTIA_M, TANGENT, U_A, U_B, V_A, V_B
-from sim.memory import clear, kernel
+from sim.memory import inlined, kernel
 
 
-@kernel
+@inlined
 def assemble(t, factor):  # type: ignore[no-untyped-def]
     """M + factor Jᵀ D J, D from the joints' last response; upper triangles of the diagonal blocks."""
     joint_bodies, joint_slot, moving = views.joint_bodies(t), views.joint_slot(t), t[at.MOVING]
@@ -69,7 +70,7 @@ def assemble(t, factor):  # type: ignore[no-untyped-def]
                 lower[slot, 7] -= yb
 
 
-@kernel
+@inlined
 def factorise_block(blocks, k):  # type: ignore[no-untyped-def]
     """L D Lᵀ of a symmetric 3 × 3 block in place: 1/d₀ l₁₀ l₂₀ · 1/d₁ l₂₁ · · 1/d₂.
 
@@ -84,7 +85,7 @@ def factorise_block(blocks, k):  # type: ignore[no-untyped-def]
     blocks[k, 0], blocks[k, 1], blocks[k, 2], blocks[k, 4], blocks[k, 5], blocks[k, 8] = d0, l10, l20, d1, l21, d2
 
 
-@kernel
+@inlined
 def solve_block(blocks, k, x, y, z):  # type: ignore[no-untyped-def]
     """Solve with a block that `factorise_block` has factored."""
     y -= blocks[k, 1] * x
@@ -93,7 +94,7 @@ def solve_block(blocks, k, x, y, z):  # type: ignore[no-untyped-def]
     return x * blocks[k, 0] - blocks[k, 1] * y - blocks[k, 2] * z, y, z
 
 
-@kernel
+@inlined
 def factorise(moving, column_start, column_rows, fill_targets, diagonal, lower, column):  # type: ignore[no-untyped-def]
     """Block L D Lᵀ in place: ``diagonal`` is factored, ``lower`` becomes L.
 
@@ -141,7 +142,7 @@ def factorise_matrix(t, factor):  # type: ignore[no-untyped-def]
     )
 
 
-@kernel
+@inlined
 def solve(t, first, x):  # type: ignore[no-untyped-def]
     """Solve with the factored matrix in place; ``x``, (bodies, 3), holds a right side that is zero before ``first``."""
     substitute(t[at.MOVING], first, views.column_start(t), views.column_rows(t), views.diagonal(t), views.lower(t), x)

@@ -58,7 +58,7 @@ from sim.kernels.lengths import longest, note_shortest
 from sim.kernels.links import MOST_LINKED, reach
 from sim.kernels.rows import own_velocity
 from sim.kernels.sudden import WORTH
-from sim.memory import floats, kernel
+from sim.memory import floats, inlined, kernel
 
 # Over what outer forces give in a step.
 _SUDDEN = 2.0
@@ -72,7 +72,7 @@ _BACK = 2.0
 OVER = 0.05
 
 
-@kernel
+@inlined
 def takes_parts(head):  # type: ignore[no-untyped-def]
     """Whether a group of structures takes the step that begins in parts."""
     of_head = views.settings(views.control(head))

@@ -31,7 +31,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.inertia import give_back, mass_of, moment_of, weigh
 from sim.kernels.layout import INERTIA_I, INERTIA_M
-from sim.memory import floats, integers, kernel
+from sim.memory import floats, inlined, integers, kernel
 
 # A movement without velocity below this [m, rad], over 1 + |x|, is rounding.
 _UNMOVED = 1e-12
@@ -76,7 +76,7 @@ def load_positions(body_at, position):  # type: ignore[no-untyped-def]
         position[i, 0], position[i, 1], position[i, 2] = b[X], b[X + 1], b[ANGLE]
 
 
-@kernel
+@inlined
 def arrive(t, h):  # type: ignore[no-untyped-def]
     """Find out how and where the bodies begin a step of length ``h``: weights, velocities, movement without velocity.
 
@@ -125,14 +125,14 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
     return fastest, touching, bounded
 
 
-@kernel
+@inlined
 def stays(body, moving):  # type: ignore[no-untyped-def]
     """Whether a body is still what it was when its structure was built: dynamic and in a space if ``moving``."""
     dynamic = floats(body, BODY_WORDS)[MASS_INVERSE] != 0.0
     return dynamic == moving and (not moving or integers(body, BODY_FULL_WORDS)[BODY_SPACE] != 0)
 
 
-@kernel
+@inlined
 def force_on(body, x, y, turn):  # type: ignore[no-untyped-def]
     """Force and moment from outside on a body, those of an impulse that has made it faster by so much [1/s²] too."""
     b, space, gx, gy = floats(body, BODY_WORDS), integers(body, BODY_FULL_WORDS)[BODY_SPACE], 0.0, 0.0
@@ -142,7 +142,7 @@ def force_on(body, x, y, turn):  # type: ignore[no-untyped-def]
     return b[FORCE_X] + mass * (gx + x), b[FORCE_Y] + mass * (gy + y), b[TORQUE] + moment_of(b) * turn
 
 
-@kernel
+@inlined
 def reached(b, h):  # type: ignore[no-untyped-def]
     """Twice the kinetic energy of a body's struct after a step ``h`` of its forces [J]; finite if its place is, too."""
     x, y = b[VX] + h * b[FORCE_X] * b[MASS_INVERSE], b[VX + 1] + h * b[FORCE_Y] * b[MASS_INVERSE]
@@ -150,7 +150,7 @@ def reached(b, h):  # type: ignore[no-untyped-def]
     return mass_of(b) * (x * x + y * y) + moment_of(b) * w * w + 0.0 * (b[X] + b[X + 1] + b[ANGLE])
 
 
-@kernel
+@inlined
 def depart(t):  # type: ignore[no-untyped-def]
     """Note how and where the bodies end a step: velocities, pseudo-velocities and positions.
 
@@ -169,7 +169,7 @@ def depart(t):  # type: ignore[no-untyped-def]
     t[at.SHIFTED] = 1 if shifted else 0
 
 
-@kernel
+@inlined
 def take_in(t):  # type: ignore[no-untyped-def]
     """Book what changed the bodies' velocities since they were written, and let the solver know.
 
@@ -206,7 +206,7 @@ def take_in(t):  # type: ignore[no-untyped-def]
     return differs, energy
 
 
-@kernel
+@inlined
 def write(t):  # type: ignore[no-untyped-def]
     """Give the bodies their velocities."""
     body_at, velocity, written = views.body_at(t), views.per_body(t, at.VELOCITY), views.per_body(t, at.WRITTEN)
@@ -220,7 +220,7 @@ def write(t):  # type: ignore[no-untyped-def]
         store_velocities(t, written)
 
 
-@kernel
+@inlined
 def settled(velocity):  # type: ignore[no-untyped-def]
     """A velocity, or 0 for one that has died away.
 

@@ -14,23 +14,24 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from sim.chipmunk import CLASS_BYTES, CONSTRAINT_CLASS, CONTROL
+from sim.chipmunk import CLASS_BYTES, CONSTRAINT_CLASS, CONTROL, POST_SOLVE
 from sim.compiling import Ahead, compiled
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.step import begin, finish, solve
-from sim.memory import integers
+from sim.memory import call_post_solve, integers
 
+#: Where the last of the functions is among the others.
+AFTER_STEP = 8
 _STEP = types.void(types.int64, types.float64)
 
 
 class Callbacks(NamedTuple):
-    """Addresses for `sim.chipmunk.adopt`."""
+    """Addresses of what Chipmunk calls."""
 
     #: Of preStep, applyCachedImpulse, applyImpulse and getImpulse; of joints that leave a step to another one, then of
-    #: the one that acts for all.
+    #: the one that acts for all; and of what is called for that one when the step's impulses are final.
     functions: np.ndarray
-    after_step: int
     #: What owns the code that they point to.
     owners: tuple[Any, ...]
 
@@ -45,9 +46,9 @@ def compiled_callbacks() -> Callbacks:
     if ahead is not None:
         ahead.wait()
     apply = apply_impulse()
-    tables = [before, cached, cached, impulse, before, cached, apply, impulse]
+    tables = [before, cached, cached, impulse, before, cached, apply, impulse, after]
     functions = np.array([function.address for function in tables], dtype=np.int64)
-    return Callbacks(functions, after.address, (before, cached, apply, impulse, after))
+    return Callbacks(functions, (before, cached, apply, impulse, after))
 
 
 @cache
@@ -75,7 +76,9 @@ def pre_step(digest: str) -> Callable[..., None]:
         t = views.control(c)
         if t[at.LEADER] == 0:
             t[at.LEADER] = constraint
-            integers(constraint, 1)[CONSTRAINT_CLASS] = t[at.OWN_CLASS] + CLASS_BYTES
+            own, tables = integers(constraint, CONTROL), integers(t[at.OWN_CLASS], AFTER_STEP + 1)
+            t[at.THEIR_POST_SOLVE] = own[POST_SOLVE] if own[POST_SOLVE] != tables[AFTER_STEP] else 0
+            own[CONSTRAINT_CLASS], own[POST_SOLVE] = t[at.OWN_CLASS] + CLASS_BYTES, tables[AFTER_STEP]
             begin(c, h)
 
     return pre_step
@@ -98,7 +101,11 @@ def apply_impulse(digest: str) -> Callable[..., None]:
     def apply_impulse(constraint, h):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
-        if c != 0 and views.control(c)[at.LEADER] == constraint:
+        if c == 0:
+            return
+        t = views.control(c)
+        # One that nothing but its joints moves is solved once.
+        if t[at.LEADER] == constraint and (t[at.ALONE] == 0 or t[at.FRESH] == 1):
             solve(c)
 
     return apply_impulse
@@ -133,7 +140,10 @@ def after_step(digest: str) -> Callable[..., None]:
         if c != 0 and views.control(c)[at.LEADER] == constraint:
             t = views.control(c)
             t[at.LEADER] = 0
-            integers(constraint, 1)[CONSTRAINT_CLASS] = t[at.OWN_CLASS]
+            own = integers(constraint, CONTROL)
+            own[CONSTRAINT_CLASS], own[POST_SOLVE] = t[at.OWN_CLASS], t[at.THEIR_POST_SOLVE]
             finish(c)
+            if own[POST_SOLVE] != 0:
+                call_post_solve(own[POST_SOLVE], constraint, space)
 
     return after_step

@@ -49,7 +49,7 @@ from sim.kernels.layout import (
     WANTED_BETA,
 )
 from sim.kernels.residual import reach_of
-from sim.memory import call_law, floats, kernel
+from sim.memory import call_law, floats, inlined, kernel
 
 # Of a structure's energy.
 _OVERRATED = 0.02
@@ -76,7 +76,7 @@ def used(limits, result, whole, out):  # type: ignore[no-untyped-def]
     return share, room
 
 
-@kernel
+@inlined
 def flow_share(t):  # type: ignore[no-untyped-def]
     """How much of a step's plastic flow there is for what the law finds at q*."""
     settings = views.settings(t)
@@ -110,7 +110,7 @@ def weaken(t):  # type: ignore[no-untyped-def]
     return change
 
 
-@kernel
+@inlined
 def commit(t):  # type: ignore[no-untyped-def]
     """Let every law take over its plastic state at the step's final q*, and book the joints' energies.
 
@@ -138,7 +138,8 @@ def commit(t):  # type: ignore[no-untyped-def]
             external -= 0.5 * (r[RESULT_BEFORE] + r[RESULT_ELASTIC])
             if r[RESULT_USED] < 1.0 or t[at.BROKE] == 0:
                 # What broke in a part of this step is still seen.
-                r[RESULT_Q:RESULT_ELASTIC] = 0.0
+                for i in range(RESULT_Q, RESULT_ELASTIC):
+                    r[i] = 0.0
             r[RESULT_ELASTIC], r[RESULT_BEFORE] = 0.0, 0.0
             continue
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
@@ -222,7 +223,7 @@ def commit(t):  # type: ignore[no-untyped-def]
     return broke
 
 
-@kernel
+@inlined
 def taken(start, end, stiff):  # type: ignore[no-untyped-def]
     """What viscous damping takes, over its coefficient and the step, where a rate goes from ``start`` to ``end``.
 

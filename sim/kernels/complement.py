@@ -26,6 +26,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import clear
 from sim.kernels.blocks import factorise_matrix, solve
 from sim.kernels.layout import (
     BODY_A,
@@ -47,7 +48,7 @@ from sim.kernels.layout import (
 from sim.kernels.overlap import MOST_SWEEPS, push_apart
 from sim.kernels.residual import descend, reach_of
 from sim.kernels.rows import add_row, direction, other_velocity, own_velocity, push_loose, sum_up
-from sim.memory import clear, floats, kernel
+from sim.memory import floats, kernel
 
 #: What `touch` gives when an impulse is not a number: nothing was changed then.
 NOT_FINITE = -1.0

@@ -36,6 +36,7 @@ work and contact work.
 from sim.chipmunk import BODY_WORDS, CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE, CONTACT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import from_column
 from sim.kernels.guard import relative_velocity, rigid_motion
 from sim.kernels.inertia import moment_of
 from sim.kernels.kinematics import impulses, rates
@@ -62,13 +63,13 @@ from sim.kernels.layout import (
 )
 from sim.kernels.noted import note_work
 from sim.kernels.rows import other_velocity, own_velocity
-from sim.memory import floats, kernel
+from sim.memory import floats, inlined, kernel
 
 # Of a step.
 _ROUNDING = 1e-9
 
 
-@kernel
+@inlined
 def work_on_held(t, k, velocity, start):  # type: ignore[no-untyped-def]
     """Work that joint k does on bodies which are not dynamic."""
     joint_bodies, impulse = views.joint_bodies(t), views.per_joint(t, at.IMPULSE)
@@ -87,12 +88,12 @@ def work_on_held(t, k, velocity, start):  # type: ignore[no-untyped-def]
 def work_of_shifts(t, k, column):  # type: ignore[no-untyped-def]
     """Work on joint k of movements without velocity; ``column`` 0: by contacts, 3: by hand."""
     joint_bodies, gradient, impulse = views.joint_bodies(t), views.gradient(t), views.per_joint(t, at.IMPULSE)
-    by = views.shift(t)[:, column : column + 3]
+    by = from_column(views.shift(t), column)
     x, y, z = rates(gradient, k, by, joint_bodies[k, 0], by, joint_bodies[k, 1])
     return -(impulse[k, 0] * x + impulse[k, 1] * y + impulse[k, 2] * z) / views.settings(t)[STEP]
 
 
-@kernel
+@inlined
 def close(c, t):  # type: ignore[no-untyped-def]
     """Book what bodies and contacts did in a step; the joints' part is booked by `commit`."""
     ledger, settings, body_at = views.ledger(t), views.settings(t), views.body_at(t)
@@ -167,7 +168,7 @@ def work_at(t, velocity):  # type: ignore[no-untyped-def]
     return of_outside, of_contacts
 
 
-@kernel
+@inlined
 def contacts(c, t, start, end):  # type: ignore[no-untyped-def]
     """The contacts that a structure solved as its own: work that other bodies did on it, and how much arrived."""
     places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[WHOLE_RATIO]

@@ -42,7 +42,7 @@ from sim.kernels.layout import (
     WANTED_BETA,
     WANTED_DELTA,
 )
-from sim.memory import floats, kernel
+from sim.memory import floats, inlined, kernel
 
 # β and δ of the average-acceleration rule.
 _AVERAGE = 0.25, 0.0
@@ -51,7 +51,7 @@ _AVERAGE = 0.25, 0.0
 _ROUNDING, _BOUND, _TURN = 1e-13, 0.1, 0.25
 
 
-@kernel
+@inlined
 def choose_scheme(t, spin):  # type: ignore[no-untyped-def]
     """Time integration of a step or its parts, at whose start no body turns faster than ``spin``.
 
@@ -71,7 +71,7 @@ def choose_scheme(t, spin):  # type: ignore[no-untyped-def]
     settings[BETA], settings[DELTA] = beta, delta
 
 
-@kernel
+@inlined
 def close_from_below(t, contact, viscous, numerical):  # type: ignore[no-untyped-def]
     """Keep numerical dissipation from being negative; the ledger's entries as they were before this step [J]."""
     ledger = views.ledger(t)
@@ -97,7 +97,7 @@ def close_from_below(t, contact, viscous, numerical):  # type: ignore[no-untyped
     ledger[LEDGER_OWED] += move_between(ledger, LEDGER_PLASTIC, ledger[LEDGER_PLASTIC], least)
 
 
-@kernel
+@inlined
 def move_between(ledger, entry, most, least):  # type: ignore[no-untyped-def]
     """Move what numerical dissipation lacks to its ``least`` from an ``entry``, at the ``most``; returns how much."""
     moved = max(min(least - ledger[LEDGER_NUMERICAL], most), 0.0)

@@ -18,27 +18,28 @@ centre of mass. It deforms no joint, so the solution stays one, and the angular 
 from sim.chipmunk import BODY_WORDS, MASS, MOMENT, X
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import clear
 from sim.kernels.kinematics import impulses, turned
 from sim.kernels.layout import ANCHOR_A, INERTIA_I, INERTIA_M, INVERSE_I, INVERSE_M, TANGENT
-from sim.memory import clear, floats, kernel
+from sim.memory import floats, inlined, kernel
 
 # Stands for an infinite mass or moment of inertia, so that no 0 · ∞ arises.
 _IMMOVABLE = 1e30
 
 
-@kernel
+@inlined
 def mass_of(b):  # type: ignore[no-untyped-def]
     """Mass of a body's struct, finite."""
     return min(b[MASS], _IMMOVABLE)
 
 
-@kernel
+@inlined
 def moment_of(b):  # type: ignore[no-untyped-def]
     """Moment of inertia of a body's struct, finite."""
     return min(b[MOMENT], _IMMOVABLE)
 
 
-@kernel
+@inlined
 def weigh(weight, i, b):  # type: ignore[no-untyped-def]
     """Weight of body i by its struct; mostly it is what it was."""
     mass, moment = mass_of(b), moment_of(b)
@@ -48,7 +49,7 @@ def weigh(weight, i, b):  # type: ignore[no-untyped-def]
         weight[i, INVERSE_I] = 1.0 / moment if moment < _IMMOVABLE else 0.0
 
 
-@kernel
+@inlined
 def add_inertia(t):  # type: ignore[no-untyped-def]
     """Add the geometric stiffness to the weights, and scale the solver's velocities accordingly.
 

@@ -18,6 +18,7 @@ import math
 from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, CONSTRAINT_WORDS, COSINE, SINE, X
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import from_column
 from sim.kernels.layout import (
     ANCHOR_A,
     ANCHOR_B,
@@ -38,12 +39,12 @@ from sim.kernels.layout import (
     V_B,
 )
 from sim.kernels.owners import constraints_of
-from sim.memory import floats, integers, kernel
+from sim.memory import floats, inlined, integers, kernel
 
 _EPSILON = 2.0**-52
 
 
-@kernel
+@inlined
 def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
     """Let go of joints that are no longer in the space; the others start from ``ratio`` times their last impulses."""
     active, joint_at, joint_bodies = views.active(t), views.joint_at(t), views.joint_bodies(t)
@@ -161,7 +162,7 @@ def prepare(t):  # type: ignore[no-untyped-def]
             du, dv, dw = u - expected_u, v - expected_v, kink - expected_turn
             if t[at.SHIFTED] == 1:
                 for first in range(0, 6, 3):
-                    by = shift[:, first : first + 3]
+                    by = from_column(shift, first)
                     x, y, z = rates(gradient, k, by, ia, by, ib)
                     du, dv, dw = du - x, dv - y, dw - z
             strayed += 0.5 * quadratic(stiffness[k], du, dv, dw)
@@ -169,14 +170,14 @@ def prepare(t):  # type: ignore[no-untyped-def]
     return strayed
 
 
-@kernel
+@inlined
 def turned(body, x, y):  # type: ignore[no-untyped-def]
     """A vector in body coordinates, in the world's."""
     c, s = body[COSINE], body[SINE]
     return c * x - s * y, s * x + c * y
 
 
-@kernel
+@inlined
 def frame(a, b, geometry, k, angle_a, angle_b):  # type: ignore[no-untyped-def]
     """Cosine and sine of ψ; halfway between the two bodies' axes without an angle function, while they are near."""
     alpha = geometry[k, TURN]
@@ -190,7 +191,7 @@ def frame(a, b, geometry, k, angle_a, angle_b):  # type: ignore[no-untyped-def]
     return math.cos(psi), math.sin(psi)
 
 
-@kernel
+@inlined
 def rates(gradient, k, va, ia, vb, ib):  # type: ignore[no-untyped-def]
     """u̇, v̇ and θ̇ of joint k at the velocities of its two bodies, rows ia of va and ib of vb."""
     c, s, spin_a, spin_b = gradient[k, E_X], gradient[k, E_Y], va[ia, 2], vb[ib, 2]
@@ -202,14 +203,14 @@ def rates(gradient, k, va, ia, vb, ib):  # type: ignore[no-untyped-def]
     )
 
 
-@kernel
+@inlined
 def quadratic(stiffness, x, y, z):  # type: ignore[no-untyped-def]
     """q·K q for a joint's deformation x, y, z and a stiffness whose upper triangle is given row by row."""
     square = stiffness[0] * x * x + stiffness[3] * y * y + stiffness[5] * z * z
     return square + 2.0 * (stiffness[1] * x * y + stiffness[2] * x * z + stiffness[4] * y * z)
 
 
-@kernel
+@inlined
 def impulses(gradient, k, x, y, z):  # type: ignore[no-untyped-def]
     """What a joint's impulses do to its bodies: momentum x, y of b, which a gives, and moments on a and on b."""
     c, s, turn = gradient[k, E_X], gradient[k, E_Y], gradient[k, HOLDS] * z

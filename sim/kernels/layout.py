@@ -38,14 +38,17 @@ KINDS = 31
 # In this step: whether forces from outside differ from the last one's; whether bodies were moved on at its start, see
 # `moves`; how many joints hold; whether nothing but those changes the bodies' velocities while they are solved.
 FORCED, CARRYING, HOLDING, ALONE = 32, 33, 34, 35
-# Address of the function table of the joints, behind which lies that of the one that acts for all.
+# Address of the function table of the joints, behind which lie that of the one that acts for all, and the address of
+# what is called for it at the end of a step.
 OWN_CLASS = 36
 # Contacts that may come within the step, after those that Chipmunk found, see `near`; what Python is asked for them.
 NEAR, ASKED = 37, 38
 GATHER, LOOK, DROP = 1, 2, 3
 # Address of what is noted of the space in a step, see `noted`; 0 before it was looked through.
 NOTES = 39
-_FIRST_ADDRESS = 40
+# What Chipmunk would call at the end of a step for the joint that acts for all; 0 for nothing.
+THEIR_POST_SOLVE = 40
+_FIRST_ADDRESS = 41
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

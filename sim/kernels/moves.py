@@ -19,17 +19,18 @@ import math
 from sim.chipmunk import BODY_WORDS, X
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import clear
 from sim.kernels.bodies import move
 from sim.kernels.guard import relative_velocity, rigid_motion
 from sim.kernels.inertia import mass_of
 from sim.kernels.layout import BETA, MOVE, UNEVEN
-from sim.memory import clear, floats, kernel
+from sim.memory import floats, inlined, kernel
 
 # Over the step: what is rounding.
 _SAME = 1e-9
 
 
-@kernel
+@inlined
 def carry(t, h, last_move, moved, touching):  # type: ignore[no-untyped-def]
     """Have bodies that have ``moved`` for so long moved as far as they should be, and note how long that is."""
     settings, body_at = views.settings(t), views.body_at(t)

@@ -54,13 +54,13 @@ from sim.kernels.lengths import LONGEST_PART
 from sim.kernels.noted import IN_PARTS, LOOSE_WORDS
 from sim.kernels.owners import home, unite
 from sim.kernels.rows import own_velocity
-from sim.memory import call_notice, floats, kernel
+from sim.memory import call_notice, floats, inlined, kernel
 
 # How many parts' way ahead contacts are looked for, and the least way, over the reach of a shape.
 _AHEAD, _LEAST = 4.0, 0.01
 
 
-@kernel
+@inlined
 def gather(c, t):  # type: ignore[no-untyped-def]
     """Have Python list what is near a structure, if its step may be taken in parts, and form a group with it."""
     t[at.NEAR] = 0
@@ -84,7 +84,7 @@ def ask(t, what):  # type: ignore[no-untyped-def]
     t[at.ASKED] = 0
 
 
-@kernel
+@inlined
 def may_be_in_parts(c, t):  # type: ignore[no-untyped-def]
     """Whether a blow lasts or may begin, as far as is known before forces have acted."""
     settings, ledger = views.settings(t), views.ledger(t)
@@ -245,7 +245,7 @@ def hand_over(t):  # type: ignore[no-untyped-def]
             contact[CONTACT_TANGENT_IMPULSE] += own[CONTACT_TANGENT_IMPULSE]
 
 
-@kernel
+@inlined
 def drop(t):  # type: ignore[no-untyped-def]
     """End of a step: Chipmunk itself finds what still touches at the start of the next one."""
     if t[at.NEAR] > 0:

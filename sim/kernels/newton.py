@@ -35,7 +35,7 @@ from sim.kernels.residual import (
     strip_tangents,
 )
 from sim.kernels.spread import advance_spread, along, spread_factor, spread_residual, spread_step
-from sim.memory import kernel
+from sim.memory import inlined, kernel
 
 MOST_NEWTON_STEPS = 200
 #: After so many steps, start again from the elastic prediction.
@@ -45,7 +45,7 @@ _KINK = 1e-3
 _MOST_REFINEMENTS = 5
 
 
-@kernel
+@inlined
 def restart(t):  # type: ignore[no-untyped-def]
     """Apply the last step's impulses, which a step starts from, to velocities without joints.
 
@@ -58,7 +58,7 @@ def restart(t):  # type: ignore[no-untyped-def]
         advance_spread(t, amount)
 
 
-@kernel
+@inlined
 def measure(t):  # type: ignore[no-untyped-def]
     """Residuals of the joints and of the load pattern's spring; returns their energy, that of all, and the spring's."""
     error, size = respond(t)
@@ -66,7 +66,7 @@ def measure(t):  # type: ignore[no-untyped-def]
     return error + of_spring, size, spring
 
 
-@kernel
+@inlined
 def measure_along_lines(t, tangents, first):  # type: ignore[no-untyped-def]
     """As `measure`, for laws that are lines with these tangents."""
     error, size = respond_along_lines(t, tangents, first)
@@ -74,7 +74,7 @@ def measure_along_lines(t, tangents, first):  # type: ignore[no-untyped-def]
     return error + of_spring, size, spring
 
 
-@kernel
+@inlined
 def pull(t):  # type: ignore[no-untyped-def]
     """Residual of the load pattern's spring, if there is one, and its energy."""
     if t[at.SPREAD] == 0:
@@ -109,7 +109,7 @@ def go_on(t, length, change):  # type: ignore[no-untyped-def]
         advance_spread(t, length * change)
 
 
-@kernel
+@inlined
 def predict(t, factor, enough):  # type: ignore[no-untyped-def]
     """The first solve of a step: goes on with the tangents of a last step that flowed, or takes all joints as elastic.
 
@@ -146,7 +146,7 @@ def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
     return error, size, spring, motion
 
 
-@kernel
+@inlined
 def iterate(t, predicting):  # type: ignore[no-untyped-def]
     """Newton's method from the present velocities; returns steps taken, whether it converged, and the residual.
 

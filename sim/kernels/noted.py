@@ -39,7 +39,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels.inertia import mass_of, moment_of
-from sim.memory import call_notice, floats, integers, kernel
+from sim.memory import call_notice, floats, inlined, integers, kernel
 
 #: Words of the table: the step that was noted, how many structures have begun it and not ended it, the step after which
 #: bodies were noted; bits of the lengths of this one and of the last; copies of the lists of moving bodies and of
@@ -63,7 +63,7 @@ STOCK_WORDS = 2
 CONTACT_ROW = 5
 
 
-@kernel
+@inlined
 def note_start(t):  # type: ignore[no-untyped-def]
     """Note, once in a step, how the rest of the space begins it."""
     space = integers(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE], SPACE_WORDS)
@@ -93,7 +93,7 @@ def note_start(t):  # type: ignore[no-untyped-def]
     note_contacts(notes, space)
 
 
-@kernel
+@inlined
 def note_contacts(notes, space):  # type: ignore[no-untyped-def]
     """Note the impulses that all contacts begin with."""
     head, noted = integers(space[ARBITERS_OF_SPACE], LIST_WORDS), 0
@@ -109,7 +109,7 @@ def note_contacts(notes, space):  # type: ignore[no-untyped-def]
     notes[CONTACTS_COUNT] = noted
 
 
-@kernel
+@inlined
 def is_outdated(notes, space):  # type: ignore[no-untyped-def]
     """Whether the space has other bodies or constraints by now, or more contacts than there is room for."""
     for i in range(2):
@@ -214,7 +214,7 @@ def note_way(row, body, h):  # type: ignore[no-untyped-def]
     r[WAY + 2] += h * b[SPIN]
 
 
-@kernel
+@inlined
 def note_end(t):  # type: ignore[no-untyped-def]
     """Note how the loose bodies end a step, once all structures have."""
     if t[at.NOTES] == 0:

@@ -39,7 +39,7 @@ from sim.kernels.links import MOST_LINKED, reach
 from sim.kernels.moves import way_to_line
 from sim.kernels.noted import note_struck
 from sim.kernels.rows import push_loose
-from sim.memory import floats, integers, kernel
+from sim.memory import floats, inlined, integers, kernel
 
 
 @kernel
@@ -257,7 +257,7 @@ def touches(t, body):  # type: ignore[no-untyped-def]
     return False
 
 
-@kernel
+@inlined
 def note_pushes(t):  # type: ignore[no-untyped-def]
     """Note with which pseudo-velocities the loose bodies at the contacts go into their next move."""
     places, count = views.places(t), 0

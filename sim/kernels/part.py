@@ -11,6 +11,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import clear
 from sim.kernels.bodies import load_velocities, move, write
 from sim.kernels.commit import commit
 from sim.kernels.complement import relative
@@ -44,7 +45,7 @@ from sim.kernels.layout import (
 )
 from sim.kernels.resolved import prepare_step
 from sim.kernels.rows import other_velocity
-from sim.memory import clear, floats, kernel
+from sim.memory import floats, inlined, kernel
 
 # Of the overlap that a space allows: where less is left to a pressed contact, Chipmunk finds it by rounding or not.
 _PRESSED = 1e-3
@@ -62,7 +63,7 @@ def renew(t):  # type: ignore[no-untyped-def]
     add_inertia(t)
 
 
-@kernel
+@inlined
 def conclude(c, t):  # type: ignore[no-untyped-def]
     """Let laws and ledger take over what was found; counts the joints that broke."""
     ledger = views.ledger(t)
@@ -171,8 +172,8 @@ def end_part(head, others, before, pushes, move_on, step):  # type: ignore[no-un
 @kernel
 def scale_all(array, factor):  # type: ignore[no-untyped-def]
     """Multiply all of a two-dimensional array."""
-    for i in range(array.shape[0]):
-        for k in range(array.shape[1]):
+    for i in range(len(array)):
+        for k in range(3):
             array[i, k] *= factor
 
 

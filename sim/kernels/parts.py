@@ -29,6 +29,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import clear
 from sim.kernels.blow import OVER, forget, grow_older, is_over
 from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
 from sim.kernels.guard import choose_scheme
@@ -65,7 +66,7 @@ from sim.kernels.others import (
 )
 from sim.kernels.part import begin_part, end_part, renew, scale_all
 from sim.kernels.settle import finite, settle_bounces
-from sim.memory import clear, floats, kernel
+from sim.memory import floats, kernel
 
 
 @kernel

@@ -22,6 +22,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import clear
 from sim.kernels.bodies import move, put, reached, stays, store_velocities
 from sim.kernels.layout import (
     BEFORE,
@@ -30,7 +31,7 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.settle import first_joint_at
-from sim.memory import call_notice, clear, floats, integers, kernel
+from sim.memory import call_notice, floats, integers, kernel
 
 #: Over 1 + |x|: nearer than this to where the last step ended, a body has gone back to just there [m, rad].
 ROUNDING = 1e-12

@@ -16,17 +16,17 @@ from sim.kernels.layout import (
     STEP,
     TANGENT,
 )
-from sim.memory import call_law, floats, kernel
+from sim.memory import call_law, floats, inlined, kernel
 
 
-@kernel
+@inlined
 def reach_of(t):  # type: ignore[no-untyped-def]
     """How far q* follows the new velocities: (β + δ) h, with h for how long they are to move the bodies [s]."""
     settings = views.settings(t)
     return settings[at.NEXT_MOVE] * (settings[at.BETA] + settings[at.DELTA])
 
 
-@kernel
+@inlined
 def respond(t):  # type: ignore[no-untyped-def]
     """Residual r of every joint at the present velocities, by its law; returns its energy, and that of the impulses."""
     joint_bodies, laws, scale = views.joint_bodies(t), views.laws(t), views.scale(t)
@@ -47,7 +47,7 @@ def respond(t):  # type: ignore[no-untyped-def]
     return error, size
 
 
-@kernel
+@inlined
 def respond_along_lines(t, tangents, first):  # type: ignore[no-untyped-def]
     """As `respond`, but every law is a line through where the last step ended, with a tangent from column ``first`` on.
 
@@ -85,7 +85,7 @@ def strip_tangents(t):  # type: ignore[no-untyped-def]
         response[k, TANGENT + 5] -= damping[k, 2] / old_reach
 
 
-@kernel
+@inlined
 def remain(t, k, reach, x, y, z):  # type: ignore[no-untyped-def]
     """Add joint k's viscous forces to its response, and find its residual; returns its energy, and the impulse's."""
     damping, response, lightness = views.damping(t), views.response(t), views.per_joint(t, at.LIGHTNESS)
@@ -105,7 +105,7 @@ def remain(t, k, reach, x, y, z):  # type: ignore[no-untyped-def]
     return error, size
 
 
-@kernel
+@inlined
 def motion_scale(t):  # type: ignore[no-untyped-def]
     """Σ m v² + I ω² of the dynamic bodies."""
     weight, velocity = views.weight(t), views.per_body(t, at.VELOCITY)
@@ -116,7 +116,7 @@ def motion_scale(t):  # type: ignore[no-untyped-def]
     return total
 
 
-@kernel
+@inlined
 def gather(t, per_joint, out):  # type: ignore[no-untyped-def]
     """Jᵀ times a vector of joint impulses."""
     joint_bodies, gradient, moving = views.joint_bodies(t), views.gradient(t), t[at.MOVING]
@@ -135,7 +135,7 @@ def gather(t, per_joint, out):  # type: ignore[no-untyped-def]
             out[ib, 2] += on_b
 
 
-@kernel
+@inlined
 def descend(t, factor, with_residual):  # type: ignore[no-untyped-def]
     """Δλ = r - factor D J ΔV, r only ``with_residual`` (1 or 0), and all of that step: λ += Δλ, V += M⁻¹ Jᵀ Δλ.
 
@@ -198,7 +198,7 @@ def apply(t, p, share, counted):  # type: ignore[no-untyped-def]
         push(gradient, k, x, y, z, joint_bodies[k, 0], joint_bodies[k, 1], moving, weight, velocity)
 
 
-@kernel
+@inlined
 def push(gradient, k, x, y, z, ia, ib, moving, weight, velocity):  # type: ignore[no-untyped-def]
     """V += M⁻¹ Jᵀ p for an impulse p = (x, y, z) of joint k between bodies ia and ib."""
     px, py, on_a, on_b = impulses(gradient, k, x, y, z)

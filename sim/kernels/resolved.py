@@ -20,13 +20,13 @@ parts after what came suddenly, the parts that follow are of implicit Euler from
 from sim.kernels import views
 from sim.kernels.kinematics import prepare
 from sim.kernels.layout import BETA, DELTA, LEDGER_ELASTIC, LEDGER_KINETIC, ROUNDING, UNDAMPED
-from sim.memory import kernel
+from sim.memory import inlined
 
 # Of a structure's energy: after a step of the average-acceleration rule, and of implicit Euler.
 _STRAYED, _BETWEEN = 1e-2, 0.1
 
 
-@kernel
+@inlined
 def prepare_step(t, averaged):  # type: ignore[no-untyped-def]
     """Deformations and gradients at the start of a step or a part of it, by a rule that resolves it.
 

@@ -1,8 +1,9 @@
 """The rows of a contact: its unit impulses along normal and tangent, and what they and bodies do to each other."""
 
 from sim.chipmunk import BODY_FULL_WORDS, MASS_INVERSE, MOMENT_INVERSE, SPIN, VX
+from sim.kernels.bare import clear
 from sim.kernels.layout import ARM_A, ARM_B, BODY_A, BODY_B, INDEX_A, INDEX_B, NORMAL, OWNER_A, OWNER_B
-from sim.memory import clear, floats, kernel
+from sim.memory import floats, kernel
 
 
 @kernel

@@ -5,6 +5,7 @@ import math
 from sim.chipmunk import CONSTRAINT_SPACE, CONSTRAINT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.bare import clear
 from sim.kernels.blow import takes_parts
 from sim.kernels.bodies import arrive, depart, take_in, write
 from sim.kernels.contacts import collect, hand_back, part_points
@@ -24,7 +25,7 @@ from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.resolved import prepare_step
 from sim.kernels.settle import book_cached, finite, settle_bounces
 from sim.kernels.sudden import sudden_energy
-from sim.memory import call_notice, clear, integers, kernel
+from sim.memory import call_notice, inlined, integers, kernel
 
 
 @kernel
@@ -81,7 +82,7 @@ def take_over(c, t):  # type: ignore[no-untyped-def]
         collect(c, t)
 
 
-@kernel
+@inlined
 def has_all_constraints(t):  # type: ignore[no-untyped-def]
     """Whether the joints that hold are all constraints that Chipmunk goes through in this step."""
     return len(constraints_of(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE])) == t[at.HOLDING]
@@ -94,8 +95,6 @@ def solve(c):  # type: ignore[no-untyped-def]
     if head[at.HEAD] != 0 and head[at.HEAD] != c:
         return  # another one acts for this structure
     fresh, touching, differs = head[at.FRESH] == 1, False, False
-    if head[at.ALONE] == 1 and not fresh:
-        return  # nothing else can have touched it since it was solved
     member = c
     while member != 0:
         t = views.control(member)

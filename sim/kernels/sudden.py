@@ -45,7 +45,7 @@ from sim.kernels.layout import (
     WANTED_BETA,
     WHOLE_ONLY,
 )
-from sim.memory import floats, kernel
+from sim.memory import floats, inlined, kernel
 
 #: Of the structure's energy.
 WORTH = 1e-2
@@ -53,7 +53,7 @@ WORTH = 1e-2
 _MUCH = 0.25
 
 
-@kernel
+@inlined
 def sudden_energy(t, last_step):  # type: ignore[no-untyped-def]
     """Energy that comes suddenly in the step that begins, in implicit Euler; 0 while a blow lasts anyway [J].
 
@@ -137,7 +137,7 @@ def note_forces(t):  # type: ignore[no-untyped-def]
     return most, at_once
 
 
-@kernel
+@inlined
 def note_supports(t):  # type: ignore[no-untyped-def]
     """Note how fast held bodies are carried along, by velocity or by hand.
 

@@ -1,4 +1,4 @@
-"""The arrays of a structure: functions of its control table, a numpy array each.
+"""The arrays of a structure: functions of its control table, a bare array each (`bare`).
 
 Every kernel begins with some of them, so they are intrinsics: a few instructions where they are called, and nothing
 for Numba to analyse.
@@ -10,58 +10,54 @@ from typing import Any
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
-from numba.np.arrayobj import make_array
 
 from sim.kernels import layout as at
+from sim.kernels.bare import Bare, bare_at
 from sim.memory import WORD, array_at
 
 _FLOATS, _INTEGERS = types.float64, types.int64
 
 
-def _word(context: Any, builder: Any, table: Any, signature: Any, index: Any) -> Any:
-    """Code that reads a word of a control table, the first argument of ``signature``."""
-    data = make_array(signature.args[0])(context, builder, table).data
-    return builder.load(cgutils.gep(builder, data, index))
+def _word(context: Any, builder: Any, signature: Any, args: Any, index: Any) -> Any:
+    """Code that reads a word of a control table, the first of ``args``."""
+    data = cgutils.create_struct_proxy(signature.args[0])(context, builder, args[0]).data
+    return builder.load(builder.gep(data, [index]))
+
+
+def _of(kind: Bare, address: int, rows: int) -> Callable[..., Any]:
+    """The array whose address is at the word ``address``, with as many rows as the word ``rows`` says."""
+
+    @intrinsic
+    def view(typing_context, t):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            start, count = (_word(context, builder, signature, args, WORD(word)) for word in (address, rows))
+            return bare_at(context, builder, kind, start, count)
+
+        return kind(t), generate
+
+    return view  # type: ignore[no-any-return]
 
 
 def _vector(address: int, rows: int, kind: types.Type = _FLOATS) -> Callable[..., Any]:
-    """The array whose address is at the word ``address``, with as many entries as the word ``rows`` says."""
-
-    @intrinsic
-    def view(typing_context, t):  # type: ignore[no-untyped-def]
-        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
-            start, count = (_word(context, builder, args[0], signature, WORD(word)) for word in (address, rows))
-            return array_at(context, builder, signature.return_type, start, [count])
-
-        return types.Array(kind, 1, "C")(t), generate
-
-    return view  # type: ignore[no-any-return]
-
-
-def _fixed(address: int, count: int, kind: types.Type = _FLOATS) -> Callable[..., Any]:
-    """The array of ``count`` entries whose address is at the word ``address``."""
-
-    @intrinsic
-    def view(typing_context, t):  # type: ignore[no-untyped-def]
-        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
-            start = _word(context, builder, args[0], signature, WORD(address))
-            return array_at(context, builder, signature.return_type, start, [WORD(count)])
-
-        return types.Array(kind, 1, "C")(t), generate
-
-    return view  # type: ignore[no-any-return]
+    """An array of one dimension."""
+    return _of(Bare(kind), address, rows)
 
 
 def _matrix(address: int, rows: int, columns: int, kind: types.Type = _FLOATS) -> Callable[..., Any]:
-    """As `_vector`, with ``columns`` columns."""
+    """One with ``columns`` columns."""
+    return _of(Bare(kind, columns), address, rows)
+
+
+def _fixed(address: int, count: int, kind: types.Type = _FLOATS) -> Callable[..., Any]:
+    """One of ``count`` entries, whose address is at the word ``address``."""
 
     @intrinsic
     def view(typing_context, t):  # type: ignore[no-untyped-def]
         def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
-            start, count = (_word(context, builder, args[0], signature, WORD(word)) for word in (address, rows))
-            return array_at(context, builder, signature.return_type, start, [count, WORD(columns)])
+            start = _word(context, builder, signature, args, WORD(address))
+            return bare_at(context, builder, signature.return_type, start, WORD(count))
 
-        return types.Array(kind, 2, "C")(t), generate
+        return Bare(kind)(t), generate
 
     return view  # type: ignore[no-any-return]
 
@@ -72,10 +68,24 @@ def _triples(rows: int) -> Callable[..., Any]:
     @intrinsic
     def view(typing_context, t, address):  # type: ignore[no-untyped-def]
         def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
-            start, count = (_word(context, builder, args[0], signature, word) for word in (args[1], WORD(rows)))
-            return array_at(context, builder, signature.return_type, start, [count, WORD(3)])
+            start, count = (_word(context, builder, signature, args, word) for word in (args[1], WORD(rows)))
+            return bare_at(context, builder, signature.return_type, start, count)
 
-        return types.Array(_FLOATS, 2, "C")(t, types.int64), generate
+        return Bare(_FLOATS, 3)(t, types.int64), generate
+
+    return view  # type: ignore[no-any-return]
+
+
+def _numpy_matrix(address: int, rows: int, columns: int, kind: types.Type = _FLOATS) -> Callable[..., Any]:
+    """As `_matrix`, but an array of numpy's, as those are that contacts of several structures are gathered in."""
+
+    @intrinsic
+    def view(typing_context, t):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            start, count = (_word(context, builder, signature, args, WORD(word)) for word in (address, rows))
+            return array_at(context, builder, signature.return_type, start, [count, WORD(columns)])
+
+        return types.Array(kind, 2, "C")(t), generate
 
     return view  # type: ignore[no-any-return]
 
@@ -85,9 +95,9 @@ def control(typing_context, address):  # type: ignore[no-untyped-def]
     """Control table at an address."""
 
     def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
-        return array_at(context, builder, signature.return_type, args[0], [WORD(at.CONTROL_WORDS)])
+        return bare_at(context, builder, signature.return_type, args[0], WORD(at.CONTROL_WORDS))
 
-    return types.Array(_INTEGERS, 1, "C")(types.int64), generate
+    return Bare(_INTEGERS)(types.int64), generate
 
 
 per_joint = _triples(at.JOINTS)
@@ -125,5 +135,5 @@ column = _matrix(at.COLUMN, at.LOWER, 9)
 settings = _fixed(at.SETTINGS, at.SETTINGS_WORDS)
 ledger = _fixed(at.LEDGER, at.LEDGER_WORDS)
 
-places = _matrix(at.PLACES, at.ROOM, at.PLACE_WORDS, _INTEGERS)
-touches = _matrix(at.TOUCHES, at.ROOM, at.TOUCH_WORDS)
+places = _numpy_matrix(at.PLACES, at.ROOM, at.PLACE_WORDS, _INTEGERS)
+touches = _numpy_matrix(at.TOUCHES, at.ROOM, at.TOUCH_WORDS)

@@ -132,9 +132,42 @@ def assign(constraint: object, control: np.ndarray, index: int) -> None:
     words(address(constraint), CONTROL + 2, np.int64)[CONTROL:] = control.ctypes.data, index
 
 
-def hand_back(contact: int) -> None:
-    """Have Chipmunk, or the next structure that looks, solve the contact at an address again."""
-    words(contact, CONTACT_WORDS)[CONTACT_NORMAL_MASS] = 1.0
+def stand_down(location: int, functions: int, post_solve: int) -> None:
+    """Have the constraint at an address act for itself alone, with the functions at these addresses."""
+    words(location, CONTROL, np.int64)[[CONSTRAINT_CLASS, POST_SOLVE]] = functions, post_solve
+
+
+def call_before_step(constraint: object) -> None:
+    """Have a constraint's `pre_solve` called with the space that what moves of it is in, or None.
+
+    pymunk's own way is the space of its first body, and a static one need not be in any.
+    """
+    lib.cpConstraintSetPreSolveFunc(constraint, _before_step)
+
+
+@ffi.callback("cpConstraintPreSolveFunc")  # type: ignore[untyped-decorator]
+def _before_step(constraint: object, space: object) -> None:  # noqa: ARG001
+    own = ffi.from_handle(lib.cpConstraintGetUserData(constraint))
+    spaces = (body.space for body in (own.a, own.b) if body.body_type == pymunk.Body.DYNAMIC)
+    own.pre_solve(own, next((space for space in spaces if space is not None), None))
+
+
+def steps_begun(space: pymunk.Space) -> int:
+    """How many steps a space has begun."""
+    return int(words(address(space._space), SPACE_WORDS, np.int64)[SPACE_STAMP])
+
+
+def release(constraint: object) -> None:
+    """Leave a constraint's functions without anything to work on: they do nothing."""
+    words(address(constraint), CONTROL + 1, np.int64)[CONTROL] = 0
+
+
+def hand_back(contact: int, half: np.ndarray, masses: np.ndarray) -> None:
+    """Have Chipmunk, or the next structure that looks, solve the contact at an address, as `collect` found it."""
+    own = words(contact, CONTACT_WORDS)
+    own[CONTACT_R1 : CONTACT_R1 + 2] -= half
+    own[CONTACT_R2 : CONTACT_R2 + 2] += half
+    own[[CONTACT_NORMAL_MASS, CONTACT_TANGENT_MASS]] = masses
 
 
 def next_move(body: pymunk.Body) -> tuple[pymunk.Vec2d, float]:

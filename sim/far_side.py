@@ -55,14 +55,14 @@ def turn_round(bodies: Sequence[pymunk.Body], step: float) -> None:
 
 
 def _is_marked(arbiter: int) -> bool:
-    return any(contact[CONTACT_NORMAL_MASS] == -1.0 for contact in contacts_of(arbiter))
+    return any(contact[CONTACT_NORMAL_MASS] < 0.0 for contact in contacts_of(arbiter))
 
 
 def _turn(arbiter: int, space: pymunk.Space, step: float) -> None:
     """Make the first touch of an arbiter's two shapes its only contact, if there was one in this step."""
     w = words(arbiter, ARBITER_WORDS, np.int64)
     for contact in contacts_of(arbiter):
-        contact[CONTACT_NORMAL_MASS] = 1.0
+        contact[CONTACT_NORMAL_MASS] = abs(contact[CONTACT_NORMAL_MASS])
     a, b = (shape_at(int(w[word])) for word in (ARBITER_SHAPE_A, ARBITER_SHAPE_B))
     time = _touch_time(a, b, step, 0.01 * space.collision_slop)
     if time is None:

@@ -53,7 +53,7 @@ def succeed(
     for joint, heir in heirs.items():
         if joint.structure is new:
             tables.state(joint.index)[:] = heir.state
-            tables[at.RESULT][joint.index] = heir.result
+            tables[at.RESULT][joint.index], tables[at.ACTIVE][joint.index] = heir.result, 1
             # Where the next step is to find it, or the average-acceleration rule is not used; see `resolved`.
             tables[at.DEFORMATION][joint.index] = heir.result[:3]
     tables[at.SETTINGS][:] = before[at.SETTINGS]

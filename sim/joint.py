@@ -191,9 +191,9 @@ class DuctileJoint(JointReadings):
 
     def ask_for_structure(self) -> None:
         """Have the joints of its space grouped into structures anew at the start of the next step."""
-        from sim.grouping import group
+        from sim.grouping import ask
 
-        self.pre_solve = group
+        ask(self)
 
     def join(self, structure: Structure, index: int) -> None:
         """Become joint ``index`` of ``structure``, whose memory has its geometry; called by the structure itself."""

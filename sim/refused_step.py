@@ -28,14 +28,15 @@ class RefusedStep:
         place = f"joint {joint.index} (made at {x:g}, {y:g})"
         control = structure.tables.control
         if control[at.LEADER]:
-            self._why = ""
+            bodies = joint.a, joint.b
             if control[at.FRESH] == 1:
-                moving = structure.bodies[: int(control[at.MOVING])]
-                self._why = reason(place, (joint.a, joint.b), moving, structure.step)
+                self._why = reason(place, bodies, structure.bodies[: int(control[at.MOVING])], structure.step)
+            else:
+                self._why = not_finite(place, bodies)
             self._back = _step_back(structure, space_of(joint), notes)
             return
         control[at.FAULT] = -1
-        error = SolverError(f"the step was refused: {self._why or not_finite(place)}")
+        error = SolverError(f"the step was refused: {self._why}")
         raise_after_step(space_of(joint), error, self._back)
         self._why, self._back = "", None
 

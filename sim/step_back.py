@@ -43,37 +43,39 @@ def reason(place: str, bodies: tuple[pymunk.Body, pymunk.Body], moving: Collecti
 
     ``place`` names the joint; ``moving`` are the bodies of its structure that were dynamic when that was built.
     """
+    if not 0.0 < step < math.inf:
+        return f"a step of {step:g} s cannot be taken; give one above 0, such as 1 / 60"
     for body in bodies:
         if (body.body_type == pymunk.Body.DYNAMIC) != (body in moving):
             return f"{place} has a body of another type than before; after changing body_type, call ask_for_structure()"
         if body in moving and body.space is None:
             return f"{place} has a body that is no longer in the space; take the joint out, too, or add the body again"
-    return not_finite(place, _out_of_bounds(bodies, step))
+    return not_finite(place, bodies)
 
 
-def not_finite(place: str, why: str = "") -> str:
-    """What is said of a joint at ``place`` that has no finite impulse."""
+def not_finite(place: str, bodies: tuple[pymunk.Body, pymunk.Body]) -> str:
+    """What is said of a joint at ``place`` between two ``bodies`` that has no finite impulse."""
+    why = _out_of_bounds(bodies)
     because = f": {why}" if why else ""
     cure = "look for a body that was moved or pushed without bound, or take a shorter step or a lower stiffness"
     return f"the impulse of {place} is not finite{because}; {cure}"
 
 
-def _out_of_bounds(bodies: tuple[pymunk.Body, pymunk.Body], step: float) -> str:
-    """What of a joint's bodies, or of the step [s], leads out of all bounds."""
-    if not 0.0 < step < math.inf:
-        return f"a step of {step:g} s cannot be taken; give one above 0"
+def _out_of_bounds(bodies: tuple[pymunk.Body, pymunk.Body]) -> str:
+    """What of a joint's bodies leads out of all bounds; velocities and forces before what follows from them."""
     for body in bodies:
         if body.body_type != pymunk.Body.DYNAMIC:
             continue
         numbers = {
-            "position": (*body.position, body.angle),
-            "velocity": (*body.velocity, body.angular_velocity),
-            "force": (*body.force, body.torque),
+            "the space has a gravity": body.space.gravity if body.space else (0.0, 0.0),
+            "a body of it has a force": (*body.force, body.torque),
+            "a body of it has a velocity": (*body.velocity, body.angular_velocity),
+            "a body of it has a position": (*body.position, body.angle),
         }
         for what, values in numbers.items():
-            if max(map(abs, values)) > _BOUND or not all(map(math.isfinite, values)):
-                return f"a body of it has a {what} of ({', '.join(f'{value:g}' for value in values)})"
-    return "its bodies' velocities are beyond all bounds"
+            if not max(map(abs, values)) <= _BOUND or not all(map(math.isfinite, values)):
+                return f"{what} of ({', '.join(f'{value:g}' for value in values)})"
+    return ""
 
 
 class StepBack:

@@ -15,12 +15,14 @@ from sim.far_side import turn_round
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
 from sim.laws import Law
+from sim.leaving import set_free, take_out_broken, those_gone
 from sim.near import Surroundings
 from sim.noted import Notes, notes_of
 from sim.notices import listen
 from sim.ordering import minimum_degree
+from sim.predecessors import Predecessors, steps_begun
 from sim.readings import Readings
-from sim.refused_step import RefusedStep, space_of
+from sim.refused_step import RefusedStep
 from sim.space_state import look_after
 from sim.tables import Tables
 
@@ -60,6 +62,8 @@ class Structure(Readings):
     bodies: tuple[pymunk.Body, ...]
     #: Whether other structures have taken over its joints.
     superseded = False
+    #: In which of its space's steps that was.
+    left_at = 0
     # While it is restored: what was saved, and how many joints are back.
     _saved: dict[str, Any] | None = None
     _restored = 0
@@ -106,32 +110,29 @@ class Structure(Readings):
         at most begins to move with its first step.
         """
         olds = dict.fromkeys([after, *(joint.structure for joint in self.joints)])
-        moved: dict[pymunk.Body, np.ndarray] = {}
-        pushed: dict[pymunk.Body, np.ndarray] = {}
-        for old in filter(None, olds):
-            stepped, velocities = old._has_stepped, old._let_go()
-            if stepped:
-                moved |= dict(zip(old.bodies, velocities, strict=True))
-                pushed |= dict(zip(old.bodies, old.tables[at.LAST_FORCE], strict=True))
+        before = Predecessors(filter(None, olds), steps_begun(self.bodies))
+        for old in before.structures:
             lasting = self._settings[_OF_BLOW], old._settings[_OF_BLOW]
             self._settings[_OF_BLOW] = max(lasting, key=lambda blow: float(blow[0]))
+        moved = before.velocity
         for i, body in enumerate(self.bodies):
-            self.tables[at.LAST_FORCE][i] = pushed.get(body, 0.0)
+            self.tables[at.LAST_FORCE][i] = before.force.get(body, 0.0)
         last = self.tables[at.LAST_VELOCITY]
         kinematic = [body for body in self.bodies if body.body_type == pymunk.Body.KINEMATIC and body not in moved]
         moved |= {body: np.array([*body.velocity, body.angular_velocity]) for body in kinematic}
         if moved:
             if after is None:
-                carry_along(moved, [(joint.a, joint.b) for joint in self.joints])
+                carry_along(moved, before.aside, [(joint.a, joint.b) for joint in self.joints])
             for i, body in enumerate(self.bodies):
                 last[i] = moved.get(body, (*body.velocity, body.angular_velocity))
         for i, joint in enumerate(self.joints):
             if joint.structure is not None:
-                before, k = joint.structure.tables, joint.index
-                self._result[i] = before[at.RESULT][k]
-                self.tables[at.ACTIVE][i] = before[at.ACTIVE][k]
-                self.tables[at.DEFORMATION][i] = before[at.DEFORMATION][k]
-                self.tables.state(i)[:] = before.state(k)
+                own, k = joint.structure.tables, joint.index
+                self._result[i] = own[at.RESULT][k]
+                if own[at.ACTIVE][k] or joint.broken:  # or it was taken out, and comes back
+                    self.tables[at.ACTIVE][i] = own[at.ACTIVE][k]
+                self.tables[at.DEFORMATION][i] = own[at.DEFORMATION][k]
+                self.tables.state(i)[:] = own.state(k)
             self._adopt(i)
         ledger = self.tables[at.LEDGER]
         mass = np.array([(b.mass, b.mass, b.moment) for b in self.bodies if b.body_type == pymunk.Body.DYNAMIC])
@@ -146,24 +147,28 @@ class Structure(Readings):
         joint.join(self, index)
         chipmunk.assign(joint._constraint, self._control, index)
 
-    def _let_go(self) -> np.ndarray:
-        """Velocities that the bodies were moved with, for a structure that takes over their joints.
+    def let_go(self, now: int) -> np.ndarray:
+        """Velocities that the bodies were moved with, for a structure that takes over their joints in the step ``now``.
 
         In a step that has begun, the contacts go back to Chipmunk, and bodies to where their velocities have led them;
         what impulses since the last step did is not known yet.
         """
-        self.superseded = True
+        self.superseded, self.left_at = True, now
+        set_free(self)
         last = self.tables[at.LAST_VELOCITY]
         if not self._control[at.LEADER]:
             return last
+        chipmunk.stand_down(*self._control[[at.LEADER, at.OWN_CLASS, at.THEIR_POST_SOLVE]].tolist())
         self._control[at.LEADER] = 0
-        for place in self.tables[at.PLACES][: self._control[at.CONTACTS]]:
-            chipmunk.hand_back(int(place[at.WHERE]))
+        count = int(self._control[at.CONTACTS] - self._control[at.NEAR])
+        for place, touch in zip(self.tables[at.PLACES][:count], self.tables[at.TOUCHES][:count], strict=True):
+            half, masses = touch[at.HALF : at.HALF + 2], touch[at.MASSES : at.MASSES + 2]
+            chipmunk.hand_back(int(place[at.WHERE]), half, masses)
         put_forth(self.bodies, self.tables)
         return last
 
     @property
-    def _has_stepped(self) -> bool:
+    def has_stepped(self) -> bool:
         """Whether there was a step before the one that has begun, if one has."""
         return bool(self._settings[at.BEFORE + at.STEP if self._control[at.LEADER] else at.STEP] > 0.0)
 
@@ -277,6 +282,10 @@ class Structure(Readings):
             self._notes = notes_of(next(body.space for body in self.bodies if body.space is not None))
             self._control[at.NOTES] = self._notes.table.ctypes.data
             return
+        if self._control[at.LEFT]:
+            self._control[at.LEFT] = 0
+            those_gone(self)
+            return
         fault = int(self._control[at.FAULT])
         if fault >= 0:
             self._refused.told(self, self.joints[fault], self._notes)
@@ -288,14 +297,5 @@ class Structure(Readings):
             turn_round(self.bodies[: int(self._control[at.MOVING])], self.step)
         if self._control[at.MISSED] > 0:
             self.tables.make_room(2 * int(self._control[at.ROOM] + self._control[at.MISSED]))
-        if self._control[at.BROKE] == 0:
-            return
-        for joint in self.joints:
-            if joint.broken and joint.structure is self:
-                space = space_of(joint)
-                if joint in space.constraints:
-                    space.remove(joint)
-                    if joint.on_break is not None:
-                        joint.on_break(joint)
-            elif joint.structure is self:
-                joint.ask_for_structure()
+        if self._control[at.BROKE] > 0:
+            take_out_broken(self)

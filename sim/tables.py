@@ -77,7 +77,7 @@ class Tables:
                 at.LIMITS: np.array(limits, dtype=float),
                 at.SCALE: np.ones(n),
                 at.SCRATCH: np.zeros(at.SCRATCH_STATE + laws[:, 4].max()),
-                at.ACTIVE: np.ones(n, dtype=np.int64),
+                at.ACTIVE: np.full(n, at.UNKNOWN),
                 at.COLUMN_START: pattern.column_start,
                 at.COLUMN_ROWS: pattern.column_rows,
                 at.FILL_TARGETS: np.append(pattern.fill_targets, 0),

@@ -71,6 +71,39 @@ def test_a_refused_step_leaves_the_whole_space_as_it_was(spoil: Callable[[Case],
         np.testing.assert_allclose(body.position, other.position, rtol=0.0, atol=1e-12 if body in case.bodies else 1e-5)
 
 
+def a_velocity(case: Case) -> None:
+    case.bodies[4].velocity = (math.nan, 0.0)
+
+
+def an_impulse(case: Case) -> None:
+    case.bodies[4].apply_impulse_at_local_point((math.inf, 0.0))
+
+
+def gravity(case: Case) -> None:
+    case.space.gravity = (0.0, -math.inf)
+
+
+def a_place(case: Case) -> None:
+    case.bodies[4].position = (math.nan, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "what"),
+    [
+        (a_velocity, "a body of it has a velocity"),
+        (an_impulse, "a body of it has a velocity"),
+        (gravity, "the space has a gravity"),
+        (a_place, "a body of it has a position"),
+    ],
+)
+def test_what_was_set_is_named_and_not_what_follows_from_it(spoil: Callable[[Case], None], what: str) -> None:
+    case = chain(6)
+    case.space.step(1 / 60)
+    spoil(case)
+    with pytest.raises(SolverError, match=f"not finite: {what} of .*shorter step"):
+        case.space.step(1 / 60)
+
+
 @pytest.mark.parametrize("step", [-1 / 60, math.nan, math.inf])
 def test_a_step_that_is_none_is_refused(step: float) -> None:
     case = chain(5)

@@ -136,3 +136,20 @@ def test_what_moves_a_free_bar_as_a_whole_is_not_sudden() -> None:
     for _ in range(3):
         space.step(1 / 60)
         assert structure.tables.control[at.PARTS] == 1
+
+
+def test_a_swing_about_rest_is_over_when_it_has_swung_back() -> None:
+    """A load is gone: the bar swings to the other side and back in parts of steps, and in whole ones from then on."""
+    space = new_space(2, 9.81)
+    loaded_beam(space, MASS, IMPLICIT_EULER)
+    for _ in range(400):
+        space.step(1 / 60)
+    space.gravity = (0.0, 0.0)
+    (structure,) = {joint.structure for joint in space.constraints if isinstance(joint, DuctileJoint)}
+    assert structure is not None
+    parts = []
+    for _ in range(120):
+        space.step(1 / 60)
+        parts.append(int(structure.tables.control[at.PARTS]))
+    assert parts[0] > 1
+    assert set(parts[60:]) == {1}

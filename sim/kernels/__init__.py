@@ -12,7 +12,7 @@
 | ``restitution``, ``overlap`` | no more bounce than there is energy for; taking out overlap |
 | ``owners``, ``others`` | which structures are solved together, and the bodies that move with them |
 | ``commit`` | the end of a step: plastic state, breaking, what the joints bore |
-| ``energy``, ``guard`` | the ledger, and no energy from nowhere |
+| ``energy``, ``guard``, ``strained`` | the ledger, and no energy from nowhere; what was strained before |
 | ``resolved`` | the average-acceleration rule only where it resolves how bodies turn |
 | ``refusal``, ``noted`` | a step that is refused, and what else it has changed in the space |
 | ``loose``, ``links`` | bodies without joints, for the ledger of a space; Chipmunk's own constraints between them |

@@ -135,10 +135,11 @@ def grow_older(head, kinetic, h):  # type: ignore[no-untyped-def]
         settings[BLOW] = max(settings[BLOW], kinetic - settings[BLOW_KINETIC])
         settings[BLOW_AGE] += h
         least, most = settings[BLOW_LEAST], settings[BLOW_MOST]
-        if taken <= least:
-            # It gives back what was stored before.
+        # It gives back what was stored before; a swing that comes a hair nearer to rest than the last one does not.
+        less = taken <= least - _MORE * (most - least)
+        if less:
             settings[BLOW_LEAST], settings[BLOW_MOST] = taken, taken
-        if taken <= least or taken - least >= (1.0 + _MORE) * (most - least):
+        if less or taken - least >= (1.0 + _MORE) * (most - least):
             settings[BLOW_MOST], settings[BLOW_MOST_AT] = taken, settings[BLOW_AGE]
         c = t[at.NEXT]
 

@@ -190,9 +190,10 @@ def commit(t):  # type: ignore[no-untyped-def]
             r[RESULT_ELASTIC] += by_contacts + by_hand
         at_start = r[RESULT_ELASTIC] if settings[BETA] == 0.0 else at_end
         if flow_u != 0.0 or flow_v != 0.0 or flow_turn != 0.0:
-            r[RESULT_PLASTIC + (0 if flow_u > 0.0 else 1)] += abs(flow_u)
-            r[RESULT_PLASTIC + 2] += abs(flow_v)
-            r[RESULT_PLASTIC + 3] += abs(flow_turn)
+            # A joint that breaks flows until its limit, and is gone for the rest of the step.
+            r[RESULT_PLASTIC + (0 if flow_u > 0.0 else 1)] += held * abs(flow_u)
+            r[RESULT_PLASTIC + 2] += held * abs(flow_v)
+            r[RESULT_PLASTIC + 3] += held * abs(flow_turn)
             flows = True
         if held < 1.0 or room < 1.0:
             # What was stored elastically, and what the joint still took of the step's share, is lost with it.

@@ -63,6 +63,7 @@ from sim.kernels.layout import (
     INDEX_A,
     INDEX_B,
     LOOSE_START,
+    MASSES,
     NORMAL,
     OTHER_START,
     OWNER_A,
@@ -87,7 +88,7 @@ SETTLE = 0.5
 def collect(c, t):  # type: ignore[no-untyped-def]
     """Take over the contacts of this step, and form a group with the structures they are with.
 
-    Those that Chipmunk would part the wrong way are left to Python first (`sim.far_side`), marked by a mass of -1.
+    Those that Chipmunk would part the wrong way are left to Python first (`sim.far_side`), marked by a negative mass.
     """
     moving, body_at, looking, astray = t[at.MOVING], views.body_at(t), t[at.ASTRAY] == 0, 0
     places, touches = views.places(t), views.touches(t)
@@ -138,12 +139,13 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 for row in range(2):
                     touch[OTHER_START + row] = other_velocity(c, p, touch, row)
                 if looking and w[ARBITER_STATE] & 0xFFFFFFFF == FIRST and came_from_elsewhere(c, t, p, touch, slop):
-                    contact[CONTACT_NORMAL_MASS] = -1.0
+                    contact[CONTACT_NORMAL_MASS] *= -1.0
                     astray += 1
                     continue
                 for axis in range(2):
                     contact[CONTACT_R1 + axis] = touch[ARM_A + axis]
                     contact[CONTACT_R2 + axis] = touch[ARM_B + axis]
+                touch[MASSES], touch[MASSES + 1] = contact[CONTACT_NORMAL_MASS], contact[CONTACT_TANGENT_MASS]
                 contact[CONTACT_NORMAL_MASS] = 0.0
                 contact[CONTACT_TANGENT_MASS] = 0.0
                 count += 1
@@ -214,17 +216,6 @@ def meet(place, touch):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def part_points(t):  # type: ignore[no-untyped-def]
-    """Give the contacts that Chipmunk found its own points of the two surfaces again."""
-    places, touches = views.places(t), views.touches(t)
-    for k in range(t[at.CONTACTS] - t[at.NEAR]):
-        contact, touch = floats(places[k, WHERE], CONTACT_WORDS), touches[k]
-        for axis in range(2):
-            contact[CONTACT_R1 + axis] -= touch[HALF + axis]
-            contact[CONTACT_R2 + axis] += touch[HALF + axis]
-
-
-@kernel
 def kept(place, touch, h):  # type: ignore[no-untyped-def]
     """Overlap that a pressed contact keeps: some times ½ r (ω h)² of both bodies, by which turning parts them [m]."""
     a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
@@ -234,12 +225,17 @@ def kept(place, touch, h):  # type: ignore[no-untyped-def]
 
 @kernel
 def hand_back(t):  # type: ignore[no-untyped-def]
-    """Undo what `collect` did to the contacts."""
-    part_points(t)
-    places = views.places(t)
-    for k in range(t[at.CONTACTS]):
-        contact = floats(places[k, WHERE], CONTACT_WORDS)
-        contact[CONTACT_NORMAL_MASS], contact[CONTACT_TANGENT_MASS] = 1.0, 1.0
+    """Undo what `collect` did to the contacts: Chipmunk's own points of the two surfaces, and the masses.
+
+    Chipmunk solves what goes back within a step, and `Arbiter.total_ke` divides by the masses after it.
+    """
+    places, touches = views.places(t), views.touches(t)
+    for k in range(t[at.CONTACTS] - t[at.NEAR]):
+        contact, touch = floats(places[k, WHERE], CONTACT_WORDS), touches[k]
+        for axis in range(2):
+            contact[CONTACT_R1 + axis] -= touch[HALF + axis]
+            contact[CONTACT_R2 + axis] += touch[HALF + axis]
+        contact[CONTACT_NORMAL_MASS], contact[CONTACT_TANGENT_MASS] = touch[MASSES], touch[MASSES + 1]
 
 
 @kernel

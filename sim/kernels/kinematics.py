@@ -39,7 +39,7 @@ from sim.kernels.layout import (
     V_B,
 )
 from sim.kernels.owners import constraints_of
-from sim.memory import floats, inlined, integers, kernel
+from sim.memory import call_notice, floats, inlined, integers, kernel
 
 _EPSILON = 2.0**-52
 
@@ -58,14 +58,17 @@ def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
             if last_step > 0.0:
                 let_go(t, k, last_step)
                 t[at.FORCED] = 1
-            active[k] = 0
-        holding += active[k]
+            active[k], t[at.LEFT] = 0, 1
+        holding += 1 if active[k] != 0 else 0
         held = held or (active[k] != 0 and (joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving))
         for i in range(3):
-            impulse[k, i] *= ratio * active[k]
+            impulse[k, i] *= ratio if active[k] != 0 else 0.0
         if t[at.BREAKABLE] == 1:
             scale[k] = 1.0
     t[at.FREE], t[at.HOLDING] = 0 if held else 1, holding
+    if t[at.LEFT] == 1:
+        # Python sees to it that they are taken up again should they come back.
+        call_notice(t[at.NOTICE], t[at.KEY])
 
 
 @kernel

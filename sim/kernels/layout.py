@@ -48,7 +48,11 @@ GATHER, LOOK, DROP = 1, 2, 3
 NOTES = 39
 # What Chipmunk would call at the end of a step for the joint that acts for all; 0 for nothing.
 THEIR_POST_SOLVE = 40
-_FIRST_ADDRESS = 41
+# Whether joints have left the space since the last step.
+LEFT = 41
+# In `ACTIVE`: the joint holds, and what it stores is not known yet, see `strained`.
+UNKNOWN = 2
+_FIRST_ADDRESS = 42
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -60,7 +64,7 @@ _FIRST_ADDRESS = 41
     LIMITS,  # (joints, 4)
     SCALE,  # (joints,): share of its force that a joint about to break may still give; 1 otherwise
     SCRATCH,  # room for what one law gives, and the deformation and state that it is given
-    ACTIVE,  # (joints,) int64: 1 while the joint holds
+    ACTIVE,  # (joints,) int64: 1 while the joint holds, and `UNKNOWN` before its first step
     COLUMN_START,  # (moving + 1,) int64
     COLUMN_ROWS,  # (lower,) int64
     FILL_TARGETS,  # int64
@@ -183,10 +187,10 @@ PLACE_WORDS = 8
 # the loose body at the step's start, distance of the surfaces, impulses of the step's earlier parts, wanted velocity by
 # restitution alone, speed with which bodies struck each other in this contact; how far the two shapes reach from their
 # bodies' centres, and their restitution, for contacts that come within the step; half the way from Chipmunk's point on
-# a to that on b.
+# a to that on b; the two masses that Chipmunk gave the contact.
 NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
 CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE = 10, 12, 14, 17, 18, 20, 21
-REACH, RETURN, HALF = 22, 24, 25
-TOUCH_WORDS = 27
+REACH, RETURN, HALF, MASSES = 22, 24, 25, 27
+TOUCH_WORDS = 29
 # Distance of surfaces that cannot meet before contacts are found anew; it stays that, however they move [m].
 FAR = math.inf

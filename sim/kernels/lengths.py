@@ -32,6 +32,8 @@ _LEAST, LONGEST_PART, _OF_AGE = 0.05e-3, 0.5e-3, 0.05
 # After a move in which bodies turned by this angle, all parts are of the longest [rad].
 _TURN = 0.1
 _ROUNDING = 1e-6
+# Parts of a step, which are longer where that has to be: of steps of a second and more.
+_MOST = 2000
 
 
 @kernel
@@ -73,8 +75,8 @@ def longest(settings, age):  # type: ignore[no-untyped-def]
 def part_lengths(settings, span):  # type: ignore[no-untyped-def]
     """Lengths of the moves that end the parts of a ``span`` of time, and for how long forces act in each [s]."""
     last = shortest_of(settings)
-    if last >= LONGEST_PART:
-        count = math.ceil(span / last - _ROUNDING)
+    if last >= LONGEST_PART or span > _MOST * LONGEST_PART:
+        count = min(math.ceil(span / LONGEST_PART - _ROUNDING), _MOST)
         return np.full(count, span / count), np.full(count, span / count)
     rest, reached, count = span - last, 0.0, 0
     moves = np.empty(math.ceil(span / last) + 1)

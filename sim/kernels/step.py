@@ -8,7 +8,7 @@ from sim.kernels import views
 from sim.kernels.bare import clear
 from sim.kernels.blow import takes_parts
 from sim.kernels.bodies import arrive, depart, take_in, write
-from sim.kernels.contacts import collect, hand_back, part_points
+from sim.kernels.contacts import collect, hand_back
 from sim.kernels.guard import choose_scheme
 from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import take_up
@@ -24,6 +24,7 @@ from sim.kernels.parts import close_step, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.resolved import prepare_step
 from sim.kernels.settle import book_cached, finite, settle_bounces
+from sim.kernels.strained import book_strained
 from sim.kernels.sudden import sudden_energy
 from sim.memory import call_notice, inlined, integers, kernel
 
@@ -60,6 +61,8 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     carry(t, h, last_move, moved, touching)
     add_inertia(t)
     prepare_step(t, settings[BEFORE + at.BETA] != 0.0)
+    if last_step == 0.0:
+        book_strained(t)
     settings[at.SUDDEN] = sudden_energy(t, last_step)
     t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY] = 0, 0, 0
     if touching:
@@ -155,7 +158,7 @@ def finish(c):  # type: ignore[no-untyped-def]
     if t[at.FAULT] >= 0:
         roll_back(t)
     note_pushes(t)
-    part_points(t)
+    hand_back(t)
     drop(t)
     note_end(t)
     t[at.HEAD], t[at.NEXT] = 0, 0

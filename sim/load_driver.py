@@ -24,8 +24,11 @@ from sim.step_back import SolverError
 #: Time over which the node's ways are remembered, over which it is brought back to where it is wanted, and over which
 #: what it is off is smoothed [s].
 _MEMORY, _RETURN, _SMOOTHED = 0.5, 0.25, 0.1
-#: How far off its way, in lengths of the whole way, the node has gone for good.
-_ASTRAY = 10.0
+#: Share of the time from one turn to the next over which a driven node shall be sped up, and slowed down; and how long,
+#: as such a share, it is waited for at most before it turns or ends.
+EASE, LONGEST_WAIT = 0.2, 0.5
+#: How near to a place it is there, and how far off its way it has gone for good, in lengths of the whole way.
+_NEAR, _ASTRAY = 1e-4, 10.0
 
 
 class LoadDriver:
@@ -118,6 +121,10 @@ class LoadDriver:
             self._ratio = self._tangent(dt)
         elif self._both * self._ratio > 0.0:
             self._ratio = self._both / self._own
+
+    def is_at(self, place: float) -> bool:
+        """Whether the node is there, ``place`` [m] along its way."""
+        return abs(self.displacement - place) <= _NEAR * self._reach
 
     def _tangent(self, dt: float) -> float:
         """Ratio g·y / p·y of w to d for the velocities y that a unit impulse of the pattern gives."""

@@ -1,18 +1,18 @@
-"""A scene's push in time: a node driven along its way, stop after stop."""
+"""A scene's push in time: a node driven along its way, stop after stop.
+
+It is sped up and slowed down on every one, for what turns or stops at once is jerked; and it waits until it is there.
+"""
 
 from __future__ import annotations
 
-import itertools
-
 from capacity import InputError
 from scene import Scene
-from sim.load_driver import LoadDriver
+from sim.load_driver import EASE, LONGEST_WAIT, LoadDriver
 from sim.members import Assembly
 from sim.settling import settle
 
-#: Time from one stop to the next [s]: slow against the vibrations of ordinary members.
+#: Time from one stop to the next [s], but for what it then waits: slow against the vibrations of ordinary members.
 WAY_TIME = 4.0
-_EASE = 0.4
 
 
 class PrescribedPush:
@@ -21,7 +21,7 @@ class PrescribedPush:
     Attributes
     ----------
     duration : float
-        Until the last stop is reached [s].
+        Until the last stop is reached, but for what it waits at each [s].
     displacement, load : float
         How far the node has come [m], and the force along the push [N] or load factor [-].
     finished : bool
@@ -43,28 +43,36 @@ class PrescribedPush:
         self._driver = LoadDriver(assembly, push.node, scene.push_direction(), push.way())
         self._assembly = assembly
         self._stops: tuple[float, ...] = (0.0, *push.stops(), *((0.0,) if push.unload else ()))
+        self._unloads = push.unload
+        self._passed, self._since = 0, 0.0
         self.duration = WAY_TIME * (len(self._stops) - 1)
-        self._turned_at = self.duration - WAY_TIME if push.unload else self.duration
         self.displacement = self.load = 0.0
         self.finished = False
 
     def aim(self, time: float, dt: float) -> None:
         """Before a step that ends at ``time`` [s]."""
-        self._driver.aim(self._wanted(time), dt)
+        start, stop = self._stops[self._passed : self._passed + 2]
+        self._driver.aim(start + (stop - start) * _eased((time - self._since) / WAY_TIME), dt)
 
     def read(self, time: float, dt: float) -> None:
         """After that step."""
-        self._driver.read(dt)
-        unloaded = time > self._turned_at and self._driver.factor * self.load <= 0.0
-        self.displacement, self.load = self._driver.displacement, self._driver.factor
+        driver, last = self._driver, self._passed == len(self._stops) - 2
+        driver.read(dt)
+        unloaded = self._unloads and last and driver.factor * self.load <= 0.0
+        self.displacement, self.load = driver.displacement, driver.factor
+        waited = (time - self._since) / WAY_TIME - 1.0
+        there = waited > -0.5 * dt / WAY_TIME and (driver.is_at(self._stops[self._passed + 1]) or waited > LONGEST_WAIT)
         # A joint that breaks leaves another structure than the one that is driven.
-        self.finished = time >= self.duration or unloaded or not self._assembly.structure.active.all()
+        self.finished = (there and last) or unloaded or not self._assembly.structure.active.all()
+        if there:
+            self._passed, self._since = self._passed + 1, time
 
-    def _wanted(self, time: float) -> float:
-        """Where the node shall be at ``time`` [m]: evenly from stop to stop, but for a start without a jerk."""
-        way = time**2 / (2.0 * _EASE) if time < _EASE else time - 0.5 * _EASE
-        way *= self.duration / (self.duration - 0.5 * _EASE)
-        for i, (a, b) in enumerate(itertools.pairwise(self._stops)):
-            if way <= (i + 1) * WAY_TIME:
-                return a + (b - a) * (way / WAY_TIME - i)
-        return self._stops[-1]
+
+def _eased(share: float) -> float:
+    """How much of a way is done after a share of its time."""
+    if share >= 1.0:
+        return 1.0
+    ends = 2.0 * EASE * (1.0 - EASE)
+    if share < EASE:
+        return share**2 / ends
+    return (share - 0.5 * EASE) / (1.0 - EASE) if share < 1.0 - EASE else 1.0 - (1.0 - share) ** 2 / ends

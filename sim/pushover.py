@@ -14,7 +14,7 @@ import pymunk
 from scene import Scene
 from sim.borne_forces import forces_on
 from sim.joint import DuctileJoint
-from sim.load_driver import LoadDriver
+from sim.load_driver import EASE, LONGEST_WAIT, LoadDriver
 from sim.member_joints import JointPlace
 from sim.members import assemble
 from sim.model import Model
@@ -24,12 +24,8 @@ from sim.step_back import SolverError
 
 # Where inertia bears too much, a push takes longer, up to so many times.
 _LONGEST = 8.0
-# Shares of a way: over which the node is sped up, and slowed down; and over which it is seen what inertia bears, short
-# enough for a strut that gives way at once.
-_EASE, _SEEN = 0.2, 0.02
-# Before it turns or ends, a push waits until the node is this near to where it shall be, as a share of the whole way;
-# at most so long, as a share of the time that the way took.
-_NEAR, _LONGEST_WAIT = 1e-4, 0.5
+# Share of a way over which it is seen what inertia bears, short enough for a strut that gives way at once.
+_SEEN = 0.02
 # A push of which more steps than this share found no solution is none.
 _MOST_UNCONVERGED = 0.02
 
@@ -183,7 +179,7 @@ def _push(
     bearing: list[tuple[tuple[DuctileJoint, ...], np.ndarray]] = []
     seconds = 0.0
     for leg in legs:
-        for wanted in _wanted(leg, steps_a_leg, driver, _NEAR * way):
+        for wanted in _wanted(leg, steps_a_leg, driver):
             driver.aim(wanted, model.dt)
             moments.act(model.dt, factor=driver.factor)
             assembly.act()
@@ -241,18 +237,18 @@ def _inertia(kinetic: np.ndarray, way: np.ndarray, ends: list[int], load: float)
     return most
 
 
-def _wanted(leg: np.ndarray, steps: int, driver: LoadDriver, near: float) -> Iterator[float]:
+def _wanted(leg: np.ndarray, steps: int, driver: LoadDriver) -> Iterator[float]:
     """Where the node shall be after each step: along ``leg`` in ``steps``, then at its end until it is there."""
     yield from _eased(leg, steps)
-    for _ in range(round(_LONGEST_WAIT * steps)):
-        if abs(driver.displacement - leg[-1]) <= near:
+    for _ in range(round(LONGEST_WAIT * steps)):
+        if driver.is_at(leg[-1]):
             return
         yield leg[-1]
 
 
 def _eased(leg: np.ndarray, steps: int) -> np.ndarray:
     """Distances after each of ``steps`` through those of ``leg``, with speeds averaged so that nothing jerks."""
-    window = min(steps, max(1, round(_EASE * steps)))
+    window = min(steps, max(1, round(EASE * steps)))
     speeds = np.diff(np.interp(np.linspace(0.0, len(leg) - 1.0, steps - window + 2), np.arange(len(leg)), leg))
     way: np.ndarray = leg[0] + np.cumsum(np.convolve(speeds, np.full(window, 1.0 / window)))
     return way

@@ -5,9 +5,10 @@ from sim import collision_tree, installed
 installed.verify()
 collision_tree.verify()
 
+from sim.debug_draw import draw_joints  # noqa: E402  (nothing may run on structs that do not fit)
 from sim.energy import Energy, energy  # noqa: E402
 from sim.first_touch import stop_at_first_touch  # noqa: E402
-from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint  # noqa: E402  (nothing may run on structs that do not fit)
+from sim.joint import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint  # noqa: E402
 from sim.joint_arrays import JointArrays  # noqa: E402
 from sim.laws import LAWS, Bearing, ElasticPlastic, FibreSection, InteractionPlastic, Law, RigidPlastic, section_law  # noqa: E402
 from sim.limits import Limits  # noqa: E402
@@ -53,6 +54,7 @@ __all__ = [
     "Structure",
     "SystemLedger",
     "assemble",
+    "draw_joints",
     "energy",
     "equal",
     "follow",

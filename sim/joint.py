@@ -12,7 +12,7 @@ import pymunk
 from capacity import InputError
 from capacity.behaviour import from_elastic_rotation, reduced, stiffness_and_damping
 from sim import chipmunk
-from sim.joint_checks import check_bodies, check_law, check_numbers
+from sim.joint_checks import check_bodies, check_law, check_numbers, check_options, check_place
 from sim.joint_readings import JointReadings
 from sim.kernels import compiled_callbacks
 from sim.kernels.layout import GEOMETRY
@@ -33,6 +33,9 @@ class DuctileJoint(JointReadings):
     Add it to a `pymunk.Space` like any other constraint. Joints that share dynamic bodies form one structure by
     themselves and are solved together; see `structure`.
 
+    With x along ``direction`` and y to the left of it, N > 0 goes with b moving along +x, away from a; Q > 0 with b
+    moving along +y, past a; M > 0 with b turning counter-clockwise against a. What the joint does to b is -N, -Q, -M.
+
     Parameters
     ----------
     a, b : pymunk.Body
@@ -42,7 +45,8 @@ class DuctileJoint(JointReadings):
     law : Law
         Force from deformation, e.g. `ElasticPlastic`.
     direction : float, optional
-        Angle of the joint's x axis, along which N acts [rad]; by default from a to b.
+        Angle of the joint's x axis, along which N acts [rad]; by default from a to b, where a body that is not dynamic,
+        such as the ground, counts as being at the joint.
     turn : float, optional
         Share of b's rotation that the axes follow, the rest being a's; ½ between dynamic bodies, and otherwise none,
         so that they stay with the body that holds.
@@ -62,6 +66,10 @@ class DuctileJoint(JointReadings):
         When neither body is dynamic, or something else will not do.
     """
 
+    def __repr__(self) -> str:
+        x, y = self.at
+        return f"DuctileJoint(at=({x:g}, {y:g}), law={self.law.name!r}, active_limit={self.active_limit!r})"
+
     def __init__(
         self,
         a: pymunk.Body,
@@ -79,12 +87,16 @@ class DuctileJoint(JointReadings):
     ) -> None:
         check_bodies(a, b)
         check_law(law)
+        self.at = check_place(at)
         moving = [body.body_type == pymunk.Body.DYNAMIC for body in (a, b)]
         if direction is None:
-            direction = (b.position - a.position).angle
+            start, end = (
+                x.position if moves else pymunk.Vec2d(*self.at) for x, moves in zip((a, b), moving, strict=True)
+            )
+            direction = (end - start).angle
         if turn is None:
             turn = 0.5 if all(moving) else float(moving.index(False))
-        self.at = (float(at[0]), float(at[1]))
+        check_options(turn, length, limits, on_break)
         self.law = law
         self.direction = direction
         self.turn = turn

@@ -38,7 +38,7 @@ class JointReadings(pymunk.Constraint):
 
     @property
     def plastic_deformation(self) -> tuple[float, float, float, float]:
-        """Plastic elongation, shortening, slip [m] and rotation [rad], each summed without sign."""
+        """Plastic elongation, shortening, slip [m] and rotation [rad], each summed without sign; until it broke."""
         return (
             (0.0,) * 4 if self._structure is None else tuple(self._structure.plastic_deformation[self._index].tolist())
         )
@@ -62,7 +62,7 @@ class JointReadings(pymunk.Constraint):
 
     @property
     def dissipated(self) -> float:
-        """Plastic work done in the joint so far [J]."""
+        """Plastic work done in the joint so far [J]; once broken, with what was stored in it then."""
         return 0.0 if self._structure is None else float(self._structure.dissipated[self._index])
 
     @property

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from capacity import InputError
+from sim.laws.checks import is_number
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Limits:
 
     def __post_init__(self) -> None:
         for name in ("elongation", "slip", "rotation"):
-            if not getattr(self, name) >= 0.0:
+            if not (is_number(getattr(self, name)) and getattr(self, name) >= 0.0):
                 fault = f"{getattr(self, name)} is negative or no number"
                 raise InputError(f"limits.{name}", fault, "write a plastic deformation, or leave it out for no limit")
 

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 
 import pymunk
 
+from capacity import InputError
 from scene import Scene
 from sim.body_loads import BodyLoad, body_loads
 from sim.followed import check_followed
@@ -160,9 +161,15 @@ def assemble(
     ValueError
         When ``model`` names an unknown rule or law, or too few joints.
     InputError
-        When its hinges are too long for a member, or the scene has what joints do not follow.
+        When its hinges are too long for a member, the scene has what joints do not follow, or ``limits`` names a member
+        that it does not have.
     """
     check_followed(scene)
+    for name in limits or ():
+        if name not in scene.members:
+            raise InputError(
+                f"limits[{name!r}]", "there is no such member", f"the members are {', '.join(scene.members)}"
+            )
     laws = MemberLaws(scene, model)
     finest = {name: _rule(scene, name, model.of(name)) for name in scene.members}
     rules = {name: _first_rule(model, rule) for name, rule in finest.items()}

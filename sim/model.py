@@ -1,8 +1,10 @@
 """How a scene is turned into rigid bodies, and how these are stepped."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from capacity import InputError
 from sim.joint import IMPLICIT_EULER
 
 
@@ -53,6 +55,11 @@ class Model:
         loads; with 4, its first natural frequency is right to a thousandth.
     members : mapping
         By name, the members that have a model of their own.
+
+    Raises
+    ------
+    InputError
+        When the step, the iterations or the damping are out of range.
     """
 
     rule: str
@@ -68,6 +75,16 @@ class Model:
     refine_at: float | None = None
     coarse_joints: int = 4
     members: Mapping[str, MemberModel] = field(default_factory=dict, hash=False)
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.dt < math.inf:
+            raise InputError("dt", f"{self.dt!r} s is no step", "give one above 0, such as 1 / 60")
+        if self.iterations < 1:
+            raise InputError("iterations", f"{self.iterations!r} are too few", "give 1 or more")
+        if not 0.0 <= self.damping < math.inf:
+            raise InputError(
+                "damping", f"{self.damping!r} s is no damping", "give 0 or more, 2 ζ / ω for a ratio ζ at ω"
+            )
 
     def of(self, member: str) -> MemberModel:
         """The model of one member."""

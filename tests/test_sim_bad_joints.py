@@ -8,10 +8,12 @@ import pymunk
 import pytest
 
 from capacity import InputError, parse_material, parse_section
-from sim import AVERAGE_ACCELERATION, DuctileJoint, ElasticPlastic, Limits, RigidPlastic, section_law
+from scene import load_scene
+from sim import AVERAGE_ACCELERATION, DuctileJoint, ElasticPlastic, Limits, Model, RigidPlastic, assemble, section_law
 
 STIFFNESS, CAPACITY = (1e6, 1e6, 1e4), (1e3, 1e3, 1e2)
 LAW = ElasticPlastic(STIFFNESS, CAPACITY)
+CANTILEVER, CUT = load_scene("cantilever"), Model("lobatto", 5, "fibre")
 
 
 def bodies(count: int) -> list[pymunk.Body]:
@@ -47,6 +49,22 @@ def section(length: float) -> object:
         (lambda: joint(damping=(-1.0, 0.0, 0.0)), r"damping: \(-1.0, 0.0, 0.0\) will not do"),
         (lambda: joint(scheme="average"), "scheme: 'average' is no time integration; write IMPLICIT_EULER"),
         (lambda: joint(direction=math.nan), "at, direction: the joint's place is not finite"),
+        (lambda: RigidPlastic((math.inf,) * 3), "capacity: of .* none is finite and positive"),
+        (lambda: ElasticPlastic(STIFFNESS, ("1", "1", "1")), "capacity: .* is not three numbers"),  # type: ignore[arg-type]
+        (lambda: Limits(slip="3"), "limits.slip: 3 is negative or no number"),  # type: ignore[arg-type]
+        (lambda: joint(ElasticPlastic), r"law: ElasticPlastic is a kind of law; make one: ElasticPlastic\("),
+        (lambda: joint(limits=0.3), r"limits: 0.3 is no Limits; write one such as Limits\("),
+        (lambda: joint(on_break="stop"), "on_break: 'stop' cannot be called"),
+        (lambda: joint(turn=2.0), "turn: 2.0 is no share of b's rotation"),
+        (lambda: joint(length=-1.0), "length: -1.0 is no length"),
+        (lambda: joint(scheme=(1 / 12, 0.0)), r"scheme: \(.*\) is not stable at any step"),
+        (lambda: DuctileJoint(*bodies(2), (0.5,), LAW), r"at: \(0.5,\) is no point"),  # type: ignore[arg-type]
+        (lambda: DuctileJoint(*bodies(2), "here", LAW), "at: 'here' is no point"),  # type: ignore[arg-type]
+        (lambda: DuctileJoint(pymunk.Space(), bodies(1)[0], (0.5, 0.0), LAW), "a: .* is no pymunk.Body"),  # type: ignore[arg-type]
+        (lambda: Model("lobatto", 5, "fibre", dt=-1.0), "dt: -1.0 s is no step"),
+        (lambda: Model("lobatto", 5, "fibre", iterations=0), "iterations: 0 are too few"),
+        (lambda: Model("lobatto", 5, "fibre", damping=-1.0), "damping: -1.0 s is no damping"),
+        (lambda: assemble(CANTILEVER, CUT, limits={"baem": Limits()}), r"limits\['baem'\]: .*the members are beam"),
         (lambda: DuctileJoint(*bodies(1) * 2, (0.0, 0.0), LAW), "a, b: a joint needs two bodies"),
     ],
 )

@@ -208,3 +208,23 @@ def test_a_joint_takes_less_than_two_kilobytes(shared: bool) -> None:
         tracemalloc.stop()
     arrays = sum(structure.tables[word].nbytes for word in (at.RESULT, at.GRADIENT, at.LOWER_BLOCKS))
     assert arrays < sum(trace.size for trace in taken.traces) < 2000 * count
+
+
+@pytest.mark.parametrize("at", [(0.0, 0.0), (3.0, 5.0)])
+@pytest.mark.parametrize("first", [True, False])
+def test_the_axis_of_a_joint_to_the_ground_runs_along_the_bar(at: tuple[float, float], first: bool) -> None:
+    """A bar that lies to the right of where it is held bears its weight as shear, wherever the ground's origin is."""
+    space = pymunk.Space()
+    space.gravity = (0.0, -9.81)
+    bar = pymunk.Body(2.0, 1.0)
+    bar.position = at + pymunk.Vec2d(0.5, 0.0)
+    bodies = (space.static_body, bar) if first else (bar, space.static_body)
+    joint = DuctileJoint(*bodies, at, ElasticPlastic((1e8, 1e8, 1e6), (1e6, 1e6, 1e6)))
+    space.add(bar, joint)
+    for _ in range(60):
+        space.step(1 / 60)
+    N, Q, M = joint.force
+    # From the bar to the ground x runs to the left, and what is cut off in front of it is the bar.
+    assert abs(N) < 1e-3
+    assert pytest.approx(-2.0 * 9.81, rel=1e-3) == Q
+    assert pytest.approx(-9.81 if first else 9.81, rel=1e-3) == M

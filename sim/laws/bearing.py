@@ -30,7 +30,7 @@ def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True)
 class Bearing:
-    """The law above, with a stiffness k [N/m]."""
+    """A support that only pushes, with a stiffness k [N/m]: N = k u while u < 0, and nothing else."""
 
     stiffness: float
 

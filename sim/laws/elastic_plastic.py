@@ -78,14 +78,17 @@ class Capped:
 
 @dataclass(frozen=True)
 class ElasticPlastic(Capped):
-    """The law above.
+    """Elastic–perfectly plastic, with N, Q and M capped one by one: s_i = k_i (q_i - p_i), |s_i| ≤ cap_i.
+
+    Deformations q_i are extension, slip and rotation; their plastic parts p_i grow at the caps alone. The joint of
+    J. Nikula, J. Mikkola, T. Björk, Breakable elastic-plastic constraint for rigid body simulation.
 
     Parameters
     ----------
     stiffness : (float, float, float)
-        Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness.
+        Axial [N/m], shear [N/m] and rotational [N m/rad] stiffness; 0 where nothing is borne.
     capacity : (float, float, float)
-        N_max [N], Q_max [N], M_max [N m].
+        N_max [N], Q_max [N], M_max [N m]; `math.inf` for no limit.
 
     Raises
     ------

@@ -96,7 +96,9 @@ def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True)
 class FibreSection:
-    """The law above; `of_section` makes one.
+    """A section of elastic–plastic fibres with kinematic hardening, which makes N and M; shear is capped by itself.
+
+    `of_section` makes one.
 
     Parameters
     ----------

@@ -216,7 +216,7 @@ def commit(parameters, state, deformation, out):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True)
 class InteractionPlastic:
-    """The law above.
+    """Elastic–perfectly plastic with one yield surface for N, Q and M together, and flow normal to it.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from capacity import Capacity
+from capacity import Capacity, InputError
 from sim.laws.checks import check_length, check_three
 from sim.laws.elastic_plastic import Capped
 
@@ -22,7 +22,7 @@ STIFFER = 10.0
 
 @dataclass(frozen=True)
 class RigidPlastic(Capped):
-    """The law above.
+    """Rigid until N, Q or M reaches its own capacity, then plastic; nothing elastic is seen.
 
     Parameters
     ----------
@@ -35,9 +35,8 @@ class RigidPlastic(Capped):
     Raises
     ------
     InputError
-        When the capacity is not three numbers from 0 on.
-    ValueError
-        When none is finite and positive, for then nothing says what is stiff.
+        When the capacity is not three numbers from 0 on, or none is finite and positive, for then nothing says what is
+        stiff.
     """
 
     capacity: tuple[float, float, float]
@@ -48,7 +47,8 @@ class RigidPlastic(Capped):
     def __post_init__(self) -> None:
         check_three("capacity", self.capacity, "N, N, N m")
         if not any(0.0 < cap < math.inf for cap in self.capacity):
-            raise ValueError(f"capacities {self.capacity}: a rigid–plastic joint needs one that is finite and positive")
+            fault = f"of {self.capacity!r} none is finite and positive, so nothing says what is stiff"
+            raise InputError("capacity", fault, "give one that is, or an ElasticPlastic with the stiffness wanted")
         if any(map(math.isnan, self.stiffness)):
             most = max(cap for cap in self.capacity if cap < math.inf)
             stiffness = tuple(min(cap, most) / reach for cap, reach in zip(self.capacity, INVISIBLE, strict=True))

@@ -7,10 +7,12 @@ command line is read.
 import math
 import re
 from functools import cache
-
-import pint
+from typing import TYPE_CHECKING
 
 from capacity.errors import InputError
+
+if TYPE_CHECKING:
+    import pint
 
 # The units that structural input is written in. A registry of its own starts ten times faster than pint's full list.
 _DEFINITIONS = """
@@ -65,6 +67,8 @@ _LARGEST = 1e30
 
 @cache
 def _registry() -> "pint.UnitRegistry[float]":
+    import pint
+
     registry: pint.UnitRegistry[float] = pint.UnitRegistry(
         None, preprocessors=[lambda text: text.replace("%", " percent")]
     )
@@ -103,6 +107,8 @@ def to_si(value: str | float | int, quantity: str, place: str) -> float:
 
 
 def _parse(text: str, unit: str, quantity: str, place: str, hint: str) -> float:
+    import pint
+
     # A bare number in text would be read as SI by one user and as mm by another: a unit is asked for.
     if unit and re.fullmatch(r"\s*[-+0-9.eE]+\s*", text):
         raise InputError(place, f'"{text}" has no unit', hint)

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import pymunk
-from scipy.linalg import eigh
 
 from sim.joint import DuctileJoint
 
@@ -31,6 +30,8 @@ def natural_modes(joints: Sequence[DuctileJoint]) -> tuple[np.ndarray, dict[pymu
         stiffness += gradient.T @ (k + np.triu(k, 1).T) @ gradient
     mass = np.repeat([body.mass for body in moving], 3)
     mass[2::3] = [body.moment for body in moving]
-    squares, shapes = eigh(stiffness, np.diag(mass))
+    lightness = 1.0 / np.sqrt(mass)
+    squares, scaled = np.linalg.eigh(lightness[:, None] * stiffness * lightness)
+    shapes = lightness[:, None] * scaled
     frequencies = np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi)
     return frequencies, {body: shapes[at : at + 3] for body, at in first.items()}

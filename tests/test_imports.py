@@ -71,6 +71,20 @@ def test_command_line_starts_without_the_heavy_libraries() -> None:
     assert done.returncode == 0, done.stderr
 
 
+def test_joints_of_plain_numbers_start_without_what_they_do_not_need() -> None:
+    heavy = ("skfem", "matplotlib", "pint", "meshio")
+    code = (
+        "import sys, pymunk, sim\n"
+        "space, body = pymunk.Space(), pymunk.Body(1.0, 1.0)\n"
+        "law = sim.ElasticPlastic((1e6, 1e6, 1e4), (1e3, 1e3, 1e2))\n"
+        "space.add(body, sim.DuctileJoint(space.static_body, body, (0.0, 0.0), law))\n"
+        "space.step(1 / 60)\n"
+        f"assert not set({heavy!r}) & set(sys.modules), set({heavy!r}) & set(sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.mark.parametrize(
     ("folder", "table", "name"), [("sim", "README.md", "`{}.py`"), ("sim/kernels", "__init__.py", "``{}``")]
 )

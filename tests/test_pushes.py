@@ -2,6 +2,7 @@
 
 import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -87,6 +88,22 @@ def test_heavy_nodes_are_pushed_slowly() -> None:
     assert off[1] < 2e-3
     assert pushes[1].inertia <= 1e-3
     assert sim.PACE.duration == pushes[0].duration < pushes[1].duration
+
+
+def test_a_push_stands_when_a_slower_one_breaks_down(monkeypatch: pytest.MonkeyPatch) -> None:
+    push, scene = sim.pushover._push, strip()
+    way, model = np.linspace(0.0, 0.7, 11), Model("lobatto", 5, "elastic-plastic")
+    stands = sim.push_over(scene, model, way, pace=Pace(most_inertia=1.0))
+
+    def breaks_down(*args: Any) -> sim.Push:
+        if args[-1] > sim.PACE.duration:
+            raise sim.SolverError("slower")
+        return push(*args)
+
+    monkeypatch.setattr(sim.pushover, "_push", breaks_down)
+    again = sim.push_over(scene, model, way, pace=Pace(most_inertia=0.5 * stands.inertia))
+    assert again.inertia == stands.inertia
+    assert np.array_equal(again.load, stands.load)
 
 
 def strip() -> Scene:

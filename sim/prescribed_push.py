@@ -13,6 +13,9 @@ from sim.settling import settle
 
 #: Time from one stop to the next [s], but for what it then waits: slow against the vibrations of ordinary members.
 WAY_TIME = 4.0
+# How many times the node's own mean speed the fastest body may have before the push is slowed down, as for a strut that
+# gives way at once.
+_FAST = 4.0
 
 
 class PrescribedPush:
@@ -44,28 +47,32 @@ class PrescribedPush:
         self._assembly = assembly
         self._stops: tuple[float, ...] = (0.0, *push.stops(), *((0.0,) if push.unload else ()))
         self._unloads = push.unload
-        self._passed, self._since = 0, 0.0
+        self._passed, self._share, self._pace = 0, 0.0, 1.0
         self.duration = WAY_TIME * (len(self._stops) - 1)
         self.displacement = self.load = 0.0
         self.finished = False
 
-    def aim(self, time: float, dt: float) -> None:
-        """Before a step that ends at ``time`` [s]."""
+    def aim(self, dt: float) -> None:
+        """Before a step of ``dt`` [s]."""
         start, stop = self._stops[self._passed : self._passed + 2]
-        self._driver.aim(start + (stop - start) * _eased((time - self._since) / WAY_TIME), dt)
+        self._share += self._pace * dt / WAY_TIME
+        self._driver.aim(start + (stop - start) * _eased(self._share), dt)
 
-    def read(self, time: float, dt: float) -> None:
+    def read(self, dt: float) -> None:
         """After that step."""
-        driver, last = self._driver, self._passed == len(self._stops) - 2
+        driver, structure, last = self._driver, self._assembly.structure, self._passed == len(self._stops) - 2
         driver.read(dt)
         unloaded = self._unloads and last and driver.factor * self.load <= 0.0
         self.displacement, self.load = driver.displacement, driver.factor
-        waited = (time - self._since) / WAY_TIME - 1.0
-        there = waited > -0.5 * dt / WAY_TIME and (driver.is_at(self._stops[self._passed + 1]) or waited > LONGEST_WAIT)
+        start, stop = self._stops[self._passed : self._passed + 2]
+        most = _FAST * abs(stop - start) / WAY_TIME
+        fastest = max(body.velocity.length for body in structure.bodies)
+        self._pace = min(1.0, self._pace * most / fastest) if fastest > 0.0 else 1.0
+        there = self._share > 1.0 - 1e-9 and (driver.is_at(stop) or self._share > 1.0 + LONGEST_WAIT)
         # A joint that breaks leaves another structure than the one that is driven.
-        self.finished = (there and last) or unloaded or not self._assembly.structure.active.all()
+        self.finished = (there and last) or unloaded or not structure.active.all()
         if there:
-            self._passed, self._since = self._passed + 1, time
+            self._passed, self._share = self._passed + 1, 0.0
 
 
 def _eased(share: float) -> float:

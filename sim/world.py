@@ -227,14 +227,14 @@ class World:
             hold_back(found, h)
             touch = min(touch, found.time)
         if self.push is not None:
-            self.push.aim(end, h)
+            self.push.aim(h)
         self.space.step(h)
         self.steps += 1
         for contacts in self._contacts:
             contacts.note(self.time + touch)
         self.time = end
         if self.push is not None:
-            self.push.read(end, h)
+            self.push.read(h)
         for watch in self._watches.values():
             watch.note()
 

@@ -1,4 +1,6 @@
-"""Chipmunk's structs: the only file that knows where their fields lie, but for trees (`sim.tree_fields`).
+"""Chipmunk's structs: the only file that knows where their fields lie, but for trees and its own constraints.
+
+Those are in `sim.tree_fields` and `sim.stock`.
 
 A Chipmunk constraint is a C struct whose first field points to a table of four functions. `adopt` takes an ordinary
 pymunk constraint and gives it a table of our own, so that Chipmunk's solver calls our functions in its place.
@@ -73,19 +75,6 @@ CONSTRAINT_NEXT_A, CONSTRAINT_NEXT_B = 4, 5
 POST_SOLVE = 11
 CONTROL = 13
 CONSTRAINT_WORDS = 15
-
-#: Where Chipmunk's own constraints keep the impulse of the last step, with which the next one starts: first word, and
-#: how many.
-CACHED_IMPULSE: dict[type[pymunk.Constraint], tuple[int, int]] = {
-    pymunk.PinJoint: (25, 1),
-    pymunk.SlideJoint: (26, 1),
-    pymunk.PivotJoint: (25, 2),
-    pymunk.GrooveJoint: (32, 2),
-    pymunk.RotaryLimitJoint: (17, 1),
-    pymunk.RatchetJoint: (18, 1),
-    pymunk.GearJoint: (18, 1),
-    pymunk.SimpleMotor: (15, 1),
-}
 
 
 def address(pointer: object) -> int:
@@ -280,45 +269,3 @@ def wake_all(space: object) -> None:
 def constraints_on(body: pymunk.Body) -> list[pymunk.Constraint]:
     """Constraints that hold a body; pymunk goes on to count those that have left the space, as joints that broke."""
     return [c for c in body.constraints if words(address(c._constraint), CONSTRAINT_WORDS, np.int64)[CONSTRAINT_SPACE]]
-
-
-def cached_impulse(constraint: pymunk.Constraint) -> np.ndarray:
-    """Impulse of one of Chipmunk's own constraints in the last step, to be changed in place; springs keep none."""
-    first, count = CACHED_IMPULSE.get(type(constraint), (0, 0))
-    return words(address(constraint._constraint), first + count)[first:]
-
-
-def own_numbers(constraint: pymunk.Constraint) -> np.ndarray:
-    """All numbers of one of Chipmunk's own constraints up to its impulse, to be changed in place; none of a spring.
-
-    pymunk makes some anew from where bodies are: the distance of a pin joint, where a ratchet has got to.
-    """
-    first, count = CACHED_IMPULSE.get(type(constraint), (CONTROL, 0))
-    return words(address(constraint._constraint), first + count)[CONTROL:]
-
-
-def stock_kinds() -> np.ndarray:
-    """Chipmunk's own constraints that only hold: function table, their impulse's first word, and how many, (n, 3)."""
-    a, b = pymunk.Body(1.0, 1.0), pymunk.Body(1.0, 1.0)
-    return np.array(
-        [
-            (words(address(c._constraint), 1, np.int64)[CONSTRAINT_CLASS], *CACHED_IMPULSE[type(c)])
-            for c in one_of_each(a, b)
-            if not isinstance(c, pymunk.SimpleMotor)
-        ]
-    )
-
-
-def one_of_each(a: pymunk.Body, b: pymunk.Body) -> list[pymunk.Constraint]:
-    """Every kind of constraint with a cached impulse."""
-    here = (0.0, 0.0)
-    return [
-        pymunk.PinJoint(a, b),
-        pymunk.SlideJoint(a, b, here, here, 0.0, 1.0),
-        pymunk.PivotJoint(a, b, here, here),
-        pymunk.GrooveJoint(a, b, here, (1.0, 0.0), here),
-        pymunk.RotaryLimitJoint(a, b, 0.0, 1.0),
-        pymunk.RatchetJoint(a, b, 0.0, 1.0),
-        pymunk.GearJoint(a, b, 0.0, 1.0),
-        pymunk.SimpleMotor(a, b, 1.0),
-    ]

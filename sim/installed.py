@@ -10,14 +10,13 @@ from sim import chipmunk as at
 from sim.chipmunk import (
     address,
     body_address,
-    cached_impulse,
     listed,
     next_move,
-    one_of_each,
     sleeping_groups,
     wake_all,
     words,
 )
+from sim.stock import KINDS, ON_A, ON_B, POINT, TURN, Kind, cached_impulse
 
 #: pymunk versions that the offsets were taken from.
 KNOWN_VERSIONS = "7.3"
@@ -124,10 +123,35 @@ def _constraints_fit() -> bool:
     fits &= fields[at.POST_SOLVE] == 73
     space.remove(first, between)
     fits &= fields[at.CONSTRAINT_SPACE] == 0
-    for constraint in one_of_each(a, b):
-        cached_impulse(constraint)[:] = 47.0
-        fits &= abs(constraint.impulse - math.hypot(*cached_impulse(constraint))) <= 1e-12
-    return bool(fits)
+    return bool(fits) and all(_kind_fits(kind) for kind in KINDS.values())
+
+
+def _kind_fits(kind: Kind) -> bool:
+    """Whether a kind of Chipmunk's own constraints has its numbers where they should be: a step finds what is known."""
+    space, a, b = pymunk.Space(), pymunk.Body(3.0, 5.0), pymunk.Body(7.0, 11.0)
+    b.position = (13.0, 0.0)
+    constraint = kind.make(a, b)
+    space.add(a, b, constraint)
+    space.step(0.25)
+    field, spins, along = words(address(constraint._constraint), at.CONTROL + 32), 1 / 5 + 1 / 11, 1 / 3 + 1 / 7
+    expected = [(kind.mass, 1.0 / (spins if kind.way == TURN else along))]
+    if kind.way == POINT:
+        across = along + ON_A[0] ** 2 / 5 + ON_B[0] ** 2 / 11
+        expected += [(kind.mass + 1, 0.0), (kind.mass + 2, 0.0), (kind.mass + 3, 1.0 / across)]
+    if kind.arms:
+        expected += [(kind.arms + i, arm) for i, arm in enumerate((*ON_A, *ON_B))]
+    if kind.axis:
+        expected += [(kind.axis, 1.0), (kind.axis + 1, 0.0)]
+    if kind.ratio:
+        expected += [(kind.ratio, 1.0), (kind.ratio + 1, 1.0)]
+    if kind.target:
+        # The spring alone gives this velocity, and the damper takes a share of it.
+        speed = 0.25 * spins if kind.way == TURN else -0.25 * (13.0 - ON_A[0] + ON_B[0]) * along
+        share = 1.0 - math.exp(-0.25 * (spins if kind.way == TURN else along))
+        expected += [(kind.damping, 1.0), (kind.coefficient, share), (kind.target, (1.0 - share) * speed)]
+    cached_impulse(constraint)[:] = 47.0
+    fits = abs(constraint.impulse - 47.0 * math.sqrt(kind.count)) <= 1e-12
+    return fits and all(abs(field[word] - value) <= 1e-12 for word, value in expected)
 
 
 def _contacts_fit() -> bool:

@@ -11,6 +11,8 @@ from sim import chipmunk
 from sim.chipmunk import ARBITERS_OF_SPACE, CONSTRAINTS_OF_SPACE, CONTROL, MOVING_BODIES
 from sim.joint import DuctileJoint
 from sim.kernels import noted as at
+from sim.kernels.ties import CONSTRAINT, PLACE, TIE_WORDS
+from sim.stock import kinds, own_numbers, starts_from_last
 
 # Contacts that there is room for at first, and over those that there are.
 _ROOM, _SPARE = 16, 2
@@ -31,7 +33,9 @@ class Notes:
 
     def __init__(self) -> None:
         self.table = np.zeros(at.NOTES_WORDS, dtype=np.int64)
-        self.table[[at.STAMP, at.ENDED]] = -1
+        self.table[[at.STAMP, at.ENDED, at.BOUND]] = -1
+        self._kinds, self._ties = kinds(), np.zeros((0, TIE_WORDS), np.int64)
+        self.table[[at.KINDS, at.KINDS_COUNT]] = self._kinds.ctypes.data, len(self._kinds)
         self.loose = np.zeros((0, at.LOOSE_WORDS))
         self.stock: list[np.ndarray] = []
         self._own, self._numbers, self._contacts = (
@@ -59,13 +63,18 @@ class Notes:
         for row, one in zip(self.loose, addresses, strict=True):
             row[:] = known.get(one, row)
         self.loose[:, 0].view(np.int64)[:] = addresses
-        others = [c for c in space.constraints if type(c) in chipmunk.CACHED_IMPULSE]
-        self.stock = [chipmunk.own_numbers(c) for c in others]
+        others = [c for c in space.constraints if starts_from_last(c)]
+        self.stock = [own_numbers(c) for c in others]
         own = [
             (chipmunk.address(c._constraint) + 8 * CONTROL, len(one)) for c, one in zip(others, self.stock, strict=True)
         ]
         self._own = np.array(own, dtype=np.int64).reshape(-1, at.STOCK_WORDS)
         self._numbers = np.zeros(sum(map(len, self.stock)))
+        own_joints = {chipmunk.address(joint._constraint) for joint in joints}
+        ties = [(place, one) for place, one in enumerate(self._lists[1].tolist()) if one not in own_joints]
+        self._ties = np.zeros((len(ties), TIE_WORDS), dtype=np.int64)
+        self._ties[:, [PLACE, CONSTRAINT]] = np.array(ties, dtype=np.int64).reshape(-1, 2)
+        table[[at.TIES, at.TIES_COUNT]] = self._ties.ctypes.data, len(ties)
         arbiters = chipmunk.listed(space, ARBITERS_OF_SPACE).tolist()
         count = sum(len(chipmunk.contacts_of(arbiter)) for arbiter in arbiters)
         self._contacts = np.zeros((_ROOM + _SPARE * count, at.CONTACT_ROW))

@@ -20,6 +20,7 @@ from sim import chipmunk
 from sim.chipmunk import ARBITERS_OF_SPACE, CONSTRAINTS_OF_SPACE, MOVING_BODIES
 from sim.collision_tree import CollisionTrees
 from sim.contact_graph import ContactGraph
+from sim.stock import own_numbers, starts_from_last
 
 if TYPE_CHECKING:
     from sim.structure import Structure
@@ -90,7 +91,7 @@ class SpaceState:
         return cls(
             [(body, chipmunk.save_body(body)) for body in bodies],
             [(shape, shape.get_vertices()) for shape in shapes if isinstance(shape, pymunk.Poly)],
-            [(c, chipmunk.own_numbers(c).copy()) for c in constraints if type(c) in chipmunk.CACHED_IMPULSE],
+            [(c, own_numbers(c).copy()) for c in constraints if starts_from_last(c)],
             [body_at[one] for one in chipmunk.listed(space, MOVING_BODIES).tolist()],
             [[body_at[one] for one in group] for group in chipmunk.sleeping_groups(space)],
             [constraint_at[one] for one in chipmunk.listed(space, CONSTRAINTS_OF_SPACE).tolist()],
@@ -109,7 +110,7 @@ class SpaceState:
         for shape in self.shapes:
             shape.cache_bb()
         for constraint, numbers in self.stock:
-            chipmunk.own_numbers(constraint)[:] = numbers
+            own_numbers(constraint)[:] = numbers
         bodies = [body for body, _ in self.bodies]
         touching = self.contacts.restore(space, bodies, self.shapes)
         self._put_to_sleep(space)

@@ -55,7 +55,7 @@ class Tables:
         limits = [(j.limits.elongation, j.limits.slip, j.limits.rotation, j.limits.compression_counts) for j in joints]
         settings = np.zeros(at.SETTINGS_WORDS)
         settings[[at.BETA, at.DELTA]] = settings[[at.WANTED_BETA, at.WANTED_DELTA]] = joints[0].scheme
-        settings[at.TOLERANCE] = tolerance**2
+        settings[at.TOLERANCE], settings[at.SOFT] = tolerance**2, 1.0
         keys, values = hash_table([chipmunk.body_address(body) for body in bodies])
         per_joint = (at.DEFORMATION, at.LIGHTNESS, at.IMPULSE, at.RESIDUAL, at.SLOPE)
         velocities = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION, at.BEGUN_AT)
@@ -92,7 +92,6 @@ class Tables:
                 at.LOWER_BLOCKS: np.zeros((below, 9)),
                 at.COLUMN: np.zeros((np.diff(pattern.column_start).max(initial=0), 9)),
                 at.RESULT: np.zeros((n, at.RESULT_WORDS)),
-                at.STOCK: chipmunk.stock_kinds(),
                 at.BODY_KEYS: keys,
                 at.BODY_VALUES: values,
             }
@@ -105,7 +104,6 @@ class Tables:
         self.control[at.DAMPED] = int(self[at.DAMPING].any())
         self.control[at.BREAKABLE] = int(np.isfinite(self[at.LIMITS][:, :3]).any())
         self.control[at.HASH_LENGTH] = len(keys)
-        self.control[at.KINDS] = len(self[at.STOCK])
         self.make_room(_ROOM)
 
     def __getitem__(self, word: int) -> np.ndarray:

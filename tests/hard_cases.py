@@ -1,4 +1,4 @@
-"""Hard cases of the structure solver, and what each is held to; ``python tests/hard_cases.py`` prints the table.
+"""Hard cases of the structure solver; `hard_case_table` says what each is held to.
 
 The member is a steel bar of 100 x 100 mm (E = 200 GPa, fy = 235 MPa) in pieces of 40 mm and 3.12 kg, clamped at one
 end, 2 iterations a step, unless a case says otherwise.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -35,38 +35,6 @@ class Case:
     #: Whether nothing from outside acts on the bodies, so that their momenta stay.
     isolated: bool = False
     bodies: list[pymunk.Body] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class Found:
-    """What a case came to.
-
-    Attributes
-    ----------
-    unconverged : int
-        Steps whose residual stayed above the tolerance.
-    newton : float
-        Newton steps a step.
-    outside : float
-        How far the worst force was outside its yield surface, as a share of the capacity.
-    gap : float
-        What the ledger failed to close by, over the largest energy in it.
-    created : float
-        Energy that came from nowhere at the worst moment, over the largest energy in the ledger: numerical dissipation
-        that was negative.
-    momentum : float
-        Worst change of the momenta in a step where nothing acts from outside, over the sum of their parts' sizes.
-    broken : int
-        Joints that broke.
-    """
-
-    unconverged: int
-    newton: float
-    outside: float
-    gap: float
-    created: float
-    momentum: float
-    broken: int
 
 
 def law(stiffness: float = 1.0, strength: float = 1.0, bending: float = 1.0) -> ElasticPlastic:
@@ -274,50 +242,3 @@ def momenta(bodies: list[pymunk.Body]) -> tuple[np.ndarray, float]:
 def largest(energy: Energy) -> float:
     """The largest entry of a ledger [J]."""
     return max(map(abs, vars(energy).values()))
-
-
-def run(case: Case) -> Found:
-    """Step a case, and look at it after each step."""
-    outside, created, gap, momentum, size = 0.0, 0.0, 0.0, 0.0, 1e-300
-    joints = case.structure.joints
-    structures = {case.structure: None}
-    before, _ = momenta(case.bodies)
-    for step in range(case.steps):
-        case.act(step)
-        case.space.step(case.dt)
-        structures |= {joint.structure: None for joint in joints if joint.structure is not None}
-        for structure in structures:
-            energy = structure.energy
-            size = max(size, largest(energy))
-            gap, created = max(gap, abs(energy.gap)), max(created, -energy.numerical)
-            outside = max(outside, float(structure.utilisation.max()) - 1.0)
-        now, parts = momenta(case.bodies)
-        assert np.isfinite(now).all()
-        assert all(math.isfinite(x) for b in case.bodies for x in (*b.position, b.angle))
-        momentum = max(momentum, float(np.abs(now - before).max()) / parts) if case.isolated else 0.0
-        before = now
-    steps = sum(structure.newton_steps for structure in structures)
-    unconverged = sum(structure.unconverged for structure in structures)
-    broken = sum(joint.broken for joint in joints)
-    return Found(unconverged, steps / case.steps, outside, gap / size, created / size, momentum, broken)
-
-
-def table() -> Iterator[str]:
-    """The table, line by line, in Markdown."""
-    yield "| case | steps | dt [s] | Newton | not converged | outside yield | ledger gap | created | momentum |"
-    yield "|---|---|---|---|---|---|---|---|---|"
-    for name, build in CASES.items():
-        case = build()
-        found = run(case)
-        shares = (found.outside, found.gap, found.created)
-        momentum = f"{found.momentum:.0e}" if case.isolated else ""
-        yield (
-            f"| {name} | {case.steps} | {case.dt:.2g} | {found.newton:.1f} | {found.unconverged} | "
-            + " | ".join(f"{share:.0e}" if share else "0" for share in shares)
-            + f" | {momentum} |"
-        )
-
-
-if __name__ == "__main__":
-    for line in table():
-        print(line, flush=True)

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hard_cases import CASES, run
+from hard_case_table import CASES, run
 
 DOCS = Path(__file__).parent.parent / "docs" / "hard-cases.md"
 

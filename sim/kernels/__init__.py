@@ -9,14 +9,15 @@
 | ``residual``, ``newton`` | impulses of the joints: Newton's method with a line search |
 | ``spread`` | a load pattern under displacement control |
 | ``contacts``, ``complement``, ``rows`` | contacts of the structures' bodies, solved through the structures |
+| ``ties``, ``tie_impulses`` | Chipmunk's own constraints at the structures' bodies, solved through the structures |
 | ``restitution``, ``overlap`` | no more bounce than there is energy for; taking out overlap |
 | ``owners``, ``others`` | which structures are solved together, and the bodies that move with them |
-| ``commit`` | the end of a step: plastic state, breaking, what the joints bore |
+| ``commit``, ``halfway`` | the end of a step: plastic state, breaking, what the joints bore |
 | ``energy``, ``guard``, ``strained`` | the ledger, and no energy from nowhere; what was strained before |
 | ``resolved`` | the average-acceleration rule only where it resolves how bodies turn |
 | ``refusal``, ``noted`` | a step that is refused, and what else it has changed in the space |
 | ``loose``, ``links`` | bodies without joints, for the ledger of a space; Chipmunk's own constraints between them |
-| ``bodies``, ``moves``, ``settle`` | velocities and places; joints and contacts in turn until they agree |
+| ``bodies``, ``moves``, ``settle`` | velocities and places; joints, contacts and ties in turn until they agree |
 | ``blow``, ``sudden`` | when a step is taken in parts, inside the one that Chipmunk takes |
 | ``parts``, ``part``, ``lengths`` | how it is taken in them, and how long they are |
 | ``near``, ``late`` | contacts that come and go within a step; bodies that touched before it began |

@@ -81,7 +81,7 @@ def takes_parts(head):  # type: ignore[no-untyped-def]
     while c != 0:
         t = views.control(c)
         ledger, settings = views.ledger(t), views.settings(t)
-        if t[at.SPREAD] == 1 or settings[WHOLE_ONLY] != 0.0:
+        if t[at.SPREAD] == 1 or t[at.TIED] > 0 or settings[WHOLE_ONLY] != 0.0:
             return False
         kinetic, elastic = kinetic + ledger[LEDGER_KINETIC], elastic + ledger[LEDGER_ELASTIC]
         lasting, sudden = max(lasting, settings[BLOW]), sudden + settings[SUDDEN]

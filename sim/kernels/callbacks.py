@@ -55,7 +55,9 @@ def compiled_callbacks() -> Callbacks:
 def _digest() -> str:
     """Digest of all source that goes into the callbacks."""
     here = Path(__file__).parent
-    files = sorted([*here.glob("*.py"), here.parent / "memory.py", here.parent / "chipmunk.py"])
+    files = sorted(
+        [*here.glob("*.py"), here.parent / "memory.py", here.parent / "chipmunk.py", here.parent / "stock.py"]
+    )
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 

@@ -209,15 +209,20 @@ def complement(places, touches, g, v, change):  # type: ignore[no-untyped-def]
 @kernel
 def strike(c, t, places, touches, change):  # type: ignore[no-untyped-def]
     """Apply changed contact impulses to a structure's bodies, and let its joints take their part of them."""
+    sum_up(c, places, touches, change, views.per_body(t, at.SOLUTION))
+    transmit(t, views.per_body(t, at.CONTACT_IMPULSE))
+
+
+@kernel
+def transmit(t, booked):  # type: ignore[no-untyped-def]
+    """Apply the impulses in `SOLUTION` to a structure's bodies, add them to what is ``booked``, and tell its joints."""
     solution, velocity, weight = views.per_body(t, at.SOLUTION), views.per_body(t, at.VELOCITY), views.weight(t)
-    sum_up(c, places, touches, change, solution)
-    total = views.per_body(t, at.CONTACT_IMPULSE)
     for i in range(t[at.MOVING]):
         x, y, w = solution[i, 0], solution[i, 1], solution[i, 2]
         if x != 0.0 or y != 0.0 or w != 0.0:
-            total[i, 0] += x
-            total[i, 1] += y
-            total[i, 2] += w
+            booked[i, 0] += x
+            booked[i, 1] += y
+            booked[i, 2] += w
             velocity[i, 0] += x * weight[i, INVERSE_M]
             velocity[i, 1] += y * weight[i, INVERSE_M]
             velocity[i, 2] += w * weight[i, INVERSE_I]

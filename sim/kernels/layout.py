@@ -33,8 +33,8 @@ SHIFTED, TURNING, FREE = 21, 22, 23
 PARTS, AHEAD, AFTER_PARTS = 25, 26, 30
 # Loose bodies noted in `PUSHES`; pairs of shapes that Chipmunk would part the wrong way (-1 once that was seen to).
 PUSHED, ASTRAY = 28, 29
-# Kinds of Chipmunk's own constraints.
-KINDS = 31
+# How many of Chipmunk's own constraints a structure's bodies have, see `ties`; 0 before the step's first solve.
+TIED = 31
 # In this step: whether forces from outside differ from the last one's; whether bodies were moved on at its start, see
 # `moves`; how many joints hold; whether nothing but those changes the bodies' velocities while they are solved.
 FORCED, CARRYING, HOLDING, ALONE = 32, 33, 34, 35
@@ -103,9 +103,8 @@ _FIRST_ADDRESS = 42
     PUSHES,  # (room, 4): address (int64) and pseudo-velocities with which loose bodies ended the last step
     LAST_FORCE,  # (bodies, 3): forces and moments from outside in the last step, see `sudden`
     CARRIED,  # (bodies, 3): by what bodies were moved at the start of a step of another length, see `moves`
-    STOCK,  # (kinds, 3) int64: Chipmunk's own constraints, see `links`
-) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 50)
-CONTROL_WORDS = _FIRST_ADDRESS + 50
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 49)
+CONTROL_WORDS = _FIRST_ADDRESS + 49
 
 # Settings (float64); the spread ones are those of the load pattern's spring, see `spread`; BETA and DELTA of a step are
 # chosen from the wanted ones.
@@ -133,7 +132,11 @@ NEXT_MOVE = 27
 SHORTEST = 28
 # Whether steps, or parts of them, have been of more than one length, see `kinematics.prepare`.
 UNEVEN = 29
-_NUMBERS = 30
+# By what share of their stiffness joints resist while Newton's method feels its way, see `newton`; 1 otherwise.
+SOFT = 30
+# The most that outer forces had done in any step by the average-acceleration rule [J], see `guard`.
+LARGEST = 31
+_NUMBERS = 32
 # All of them again, as they were before the step.
 BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 

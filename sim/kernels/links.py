@@ -24,7 +24,9 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.layout import BODY_A, BODY_B, OWNER_A, OWNER_B
 from sim.kernels.owners import owner_of
+from sim.kernels.ties import kind_of
 from sim.memory import call_constraint, floats, integers, kernel
+from sim.stock import KIND_COUNT, KIND_HOLDS, KIND_IMPULSE, KIND_WORDS
 
 #: Most bodies that are reached from those that touch, and most of their constraints; more are left to whole steps.
 MOST_LINKED, MOST_LINKS = 64, 256
@@ -46,8 +48,8 @@ def reach(head, bodies):  # type: ignore[no-untyped-def]
 
     Also -1 where a constraint ties them to a structure, or is a spring, a motor or one of another kind.
     """
-    stock = views.stock(views.control(head))
-    functions = views.control(head)[at.OWN_CLASS]
+    leader = views.control(head)
+    functions = leader[at.OWN_CLASS]
     count, c = 0, head
     while c != 0:
         t = views.control(c)
@@ -64,10 +66,8 @@ def reach(head, bodies):  # type: ignore[no-untyped-def]
         constraint = integers(body, BODY_FULL_WORDS)[CONSTRAINTS]
         while constraint != 0:
             w = integers(constraint, CONSTRAINT_WORDS)
-            known = False
-            for k in range(len(stock)):
-                known = known or stock[k, 0] == w[CONSTRAINT_CLASS]
-            if not known:
+            kind = kind_of(leader, constraint)
+            if kind == 0 or integers(kind, KIND_WORDS)[KIND_HOLDS] == 0:
                 return -1
             other = w[CONSTRAINT_BODY_B] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_BODY_A]
             if owner_of(other, functions) != 0 and floats(other, BODY_WORDS)[MASS_INVERSE] > 0.0:
@@ -95,19 +95,19 @@ def add(bodies, count, body):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def links_of(bodies, stock):  # type: ignore[no-untyped-def]
+def links_of(t, bodies):  # type: ignore[no-untyped-def]
     """Constraints of these bodies that work on velocities, and where each keeps its impulse: address, first, count."""
     links, count = np.empty((MOST_LINKS, 3), np.int64), 0
     for i in range(len(bodies)):
         constraint = integers(bodies[i], BODY_FULL_WORDS)[CONSTRAINTS]
         while constraint != 0 and count < MOST_LINKS:
-            kind, known = integers(constraint, CONSTRAINT_WORDS)[CONSTRAINT_CLASS], False
+            kind, known = kind_of(t, constraint), False
             for k in range(count):
                 known = known or links[k, 0] == constraint
-            for k in range(len(stock)):
-                if stock[k, 0] == kind and not known:
-                    links[count, 0], links[count, 1], links[count, 2] = constraint, stock[k, 1], stock[k, 2]
-                    count += 1
+            if kind != 0 and not known:
+                w = integers(kind, KIND_WORDS)
+                links[count, 0], links[count, 1], links[count, 2] = constraint, w[KIND_IMPULSE], w[KIND_COUNT]
+                count += 1
             constraint = next_link(constraint, bodies[i])
     return links[:count]
 

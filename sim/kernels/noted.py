@@ -44,11 +44,13 @@ from sim.memory import call_notice, floats, inlined, integers, kernel
 #: Words of the table: the step that was noted, how many structures have begun it and not ended it, the step after which
 #: bodies were noted; bits of the lengths of this one and of the last; copies of the lists of moving bodies and of
 #: constraints, and how long they are; rows of loose bodies and how many; own constraints and how many, and room for
-#: their numbers; rows of contacts, how many there is room for, and how many were noted.
+#: their numbers; rows of contacts, how many there is room for, and how many were noted; all own constraints, how many,
+#: their kinds and how many (see `ties`), and the step in which they were given to structures.
 STAMP, UNDER_WAY, ENDED, THIS_STEP, LAST_STEP = range(5)
 LISTS, LENGTHS = 5, 7
 LOOSE, LOOSE_COUNT, STOCK, STOCK_COUNT, STOCK_NUMBERS, CONTACTS, CONTACTS_ROOM, CONTACTS_COUNT = range(9, 17)
-NOTES_WORDS = 17
+TIES, TIES_COUNT, KINDS, KINDS_COUNT, BOUND = range(17, 22)
+NOTES_WORDS = 22
 #: A loose body's row: its address; x, y, angle, the six words of its transform, and pseudo-velocities at the end of the
 #: last step; velocities and x, y, angle when this one has moved it.
 #: From there on: the last step in which structures did work on it, and that work [J]; the last step that it went

@@ -93,7 +93,7 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
     stand_in(head)
     # What another body gave comes once, whatever the length of the parts, so that no momentum is lost.
     add_all(pushes, struck, steps[0] / span)
-    links = links_of(others, views.stock(leader))
+    links = links_of(leader, others)
     before, lost, converged = np.empty((len(others), 3)), 0.0, True
     for i in range(len(moves) - 1):
         h = moves[i]

@@ -1,4 +1,4 @@
-"""Joints, breaking and contacts of a group of structures, in turn until they agree."""
+"""Joints, breaking, contacts and ties of a group of structures, in turn until they agree."""
 
 import math
 
@@ -12,6 +12,7 @@ from sim.kernels.layout import CACHED, INERTIA_I, INERTIA_M
 from sim.kernels.newton import iterate
 from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
 from sim.kernels.rows import sum_up
+from sim.kernels.tie_impulses import solve_ties
 from sim.memory import kernel
 
 _MOST_ROUNDS = 40
@@ -20,28 +21,33 @@ _SETTLED = 1e-6
 
 @kernel
 def settle(c, fresh, touching):  # type: ignore[no-untyped-def]
-    """Solve joints, breaking and contacts in turn until they agree; whether they do."""
-    predicting, untouched = fresh, True
-    for _ in range(_MOST_ROUNDS):
+    """Solve joints, breaking, contacts and ties in turn until they agree; whether they do."""
+    predicting, first, tied, struck, pulled = fresh, True, False, 0.0, 0.0
+    for turn in range(_MOST_ROUNDS + 1):
         change, taken, converged = 0.0, 0, True
         member = c
         while member != 0:
             t = views.control(member)
             steps, done, views.settings(t)[at.LAST_RESIDUAL] = iterate(t, predicting)
             t[at.NEWTON_STEPS] += steps
-            taken, converged = taken + steps, converged and done
+            taken, converged, tied = taken + steps, converged and done, tied or t[at.TIED] > 0
             if t[at.BREAKABLE] == 1:
                 change = max(change, weaken(t))
             member = t[at.NEXT]
-        predicting = False
-        # Contacts are exact for the tangents they were solved with: once the joints agree, nothing is left to do.
-        if touching and (taken > 0 or untouched):
-            untouched = False
-            moved = touch(c)
-            if moved == NOT_FINITE:
-                views.control(c)[at.FAULT] = 0
-                return True
-            change = max(change, moved)
+        if turn == _MOST_ROUNDS:
+            break  # the joints have had the last word, and none bears more than it can
+        # Contacts and ties are exact for the tangents they were solved with: once the joints agree, and they with each
+        # other, nothing is left to do.
+        anew = first or taken > 0
+        predicting, first = False, False
+        if touching:
+            struck = touch(c) if anew or pulled > _SETTLED else 0.0
+        if tied:
+            pulled = solve_ties(c) if anew or struck > _SETTLED else 0.0
+        if struck == NOT_FINITE or pulled == NOT_FINITE:
+            views.control(c)[at.FAULT] = 0
+            return True
+        change = max(change, struck, pulled)
         if change <= _SETTLED:
             return converged
     return False

@@ -26,6 +26,7 @@ from sim.kernels.resolved import prepare_step
 from sim.kernels.settle import book_cached, finite, settle_bounces
 from sim.kernels.strained import book_strained
 from sim.kernels.sudden import sudden_energy
+from sim.kernels.ties import bind, have_moved, lift_springs, note_seen
 from sim.memory import call_notice, inlined, integers, kernel
 
 
@@ -49,8 +50,10 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     t[at.AFTER_PARTS] = 1 if t[at.PARTS] > 1 else 0
     t[at.PARTS], t[at.AHEAD], t[at.BROKE] = 1, 0, 0
     settings[at.SPREAD_IMPULSE] *= ratio * t[at.SPREAD]
-    t[at.FRESH] = 1
+    t[at.FRESH], t[at.TIED] = 1, 0
+    lift_springs(t, -1.0)
     spin, touching, energy = arrive(t, h)
+    lift_springs(t, 1.0)
     if t[at.FAULT] < 0 and not (math.isfinite(energy) and h > 0.0):
         check_bodies(t)
         if t[at.FAULT] >= 0:
@@ -93,24 +96,26 @@ def has_all_constraints(t):  # type: ignore[no-untyped-def]
 
 @kernel
 def solve(c):  # type: ignore[no-untyped-def]
-    """The impulses of a group's joints and contacts at the bodies' present velocities, breaking included."""
+    """The impulses of a group's joints, contacts and ties at the bodies' present velocities, breaking included."""
     head = views.control(c)
+    if head[at.FRESH] == 1:
+        bind(c, head)
     if head[at.HEAD] != 0 and head[at.HEAD] != c:
         return  # another one acts for this structure
-    fresh, touching, differs = head[at.FRESH] == 1, False, False
+    fresh, touching, differs, tied = head[at.FRESH] == 1, False, False, False
     member = c
     while member != 0:
         t = views.control(member)
         if t[at.FAULT] >= 0:
             return
-        touching = touching or t[at.CONTACTS] > 0
+        touching, tied = touching or t[at.CONTACTS] > 0, tied or t[at.TIED] > 0
         changed, energy = take_in(t)
         differs = changed or differs
         if fresh and not (math.isfinite(energy) or finite(t)):
             refuse(c)
             return
         member = t[at.NEXT]
-    if not (differs or fresh or touching):
+    if not (differs or fresh or touching or (tied and have_moved(c))):
         return  # nothing else has touched the structure since it was solved
     converged = True
     if fresh:
@@ -141,6 +146,8 @@ def solve(c):  # type: ignore[no-untyped-def]
         t = views.control(member)
         write(t)
         member = t[at.NEXT]
+    if tied:
+        note_seen(c)
 
 
 @kernel

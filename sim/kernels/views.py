@@ -118,7 +118,6 @@ gradient = _matrix(at.GRADIENT, at.JOINTS, at.GRADIENT_WORDS)
 response = _matrix(at.RESPONSE, at.JOINTS, at.RESPONSE_WORDS)
 result = _matrix(at.RESULT, at.JOINTS, at.RESULT_WORDS)
 
-stock = _matrix(at.STOCK, at.KINDS, 3, _INTEGERS)
 shift = _matrix(at.SHIFT, at.BODIES, 6)
 weight = _matrix(at.WEIGHT, at.MOVING, at.WEIGHT_WORDS)
 

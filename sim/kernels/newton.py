@@ -32,14 +32,17 @@ from sim.kernels.residual import (
     reach_of,
     respond,
     respond_along_lines,
+    respond_stiffer,
     strip_tangents,
 )
 from sim.kernels.spread import advance_spread, along, spread_factor, spread_residual, spread_step
 from sim.memory import inlined, kernel
 
 MOST_NEWTON_STEPS = 200
-#: After so many steps, start again from the elastic prediction.
+#: After so many steps, begin anew with joints that are soft, and go on to stiffer ones.
 _PATIENCE = 15
+# Resistance of joints that are soft, over their bodies' inertia, and by how much they are made stiffer at a time.
+_SOFT, _STIFFER = 10.0, 30.0
 MOST_SEARCHES = 40
 _KINK = 1e-3
 _MOST_REFINEMENTS = 5
@@ -154,7 +157,7 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
     """
     settings = views.settings(t)
     factor, tolerance, rounding = settings[STEP] * reach_of(t), settings[at.TOLERANCE], settings[at.ROUNDING]
-    steps = 0
+    steps, begun = 0, 0
     if predicting:
         error, size, spring, motion = predict(t, factor, tolerance)
         steps = 1
@@ -166,8 +169,8 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
     while not converged and steps < MOST_NEWTON_STEPS and math.isfinite(error):
         steps += 1
         if steps == _PATIENCE:
-            error, size, spring, _ = predict_elastic(t, factor, tolerance)
-            gone = 0.0
+            error, size, spring = resist(t, softness(t, factor))
+            gone, begun, best = 0.0, steps, error
         else:
             factorise_matrix(t, factor)
             start, change = newton_step(t, factor, spring)
@@ -176,11 +179,51 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
         # Below this it is rounding that remains, and another step would not take it away; one that was cut short says
         # so only when many have been taken.
         enough = 3 if gone == 1.0 else _PATIENCE
-        if steps > enough and error >= 0.25 * best and error <= 1e6 * tolerance * (size + motion):
+        if steps - begun > enough and error >= 0.25 * best and error <= 1e6 * tolerance * (size + motion):
             converged = True
         best = min(best, error)
+        if settings[at.SOFT] < 1.0 and (converged or steps - begun > _PATIENCE):
+            error, size, spring = stiffen(t, factor, spring)
+            converged = settings[at.SOFT] == 1.0 and error <= tolerance * (size + motion) + rounding
+            begun, best = steps, error
+    if settings[at.SOFT] != 1.0:
+        error, size, spring = resist(t, 1.0)
     total = size + motion + rounding / tolerance
     return steps, converged, math.sqrt(error / total) if total > 0.0 else 0.0
+
+
+@kernel
+def softness(t, factor):  # type: ignore[no-untyped-def]
+    """Share of their stiffness with which all joints resist no more than some times as much as their bodies' inertia.
+
+    Where weak joints are stiff beyond that, the energy has a kink wherever one begins to yield, each in the way of all
+    others, and Newton's method gets nowhere. Which joints yield is decided by their strength and by the bodies'
+    inertia, so joints that are soft find it out in a few steps; then they are made stiffer, and stiffer again, each
+    time with those yielding that did, see `stiffen`.
+    """
+    lightness, stiffness, most = views.per_joint(t, at.LIGHTNESS), views.stiffness(t), 0.0
+    for k in range(t[at.JOINTS]):
+        for i, word in ((0, 0), (1, 3), (2, 5)):
+            most = max(most, factor * stiffness[k, word] * lightness[k, i])
+    return min(_SOFT / most, 1.0) if most > 0.0 else 1.0
+
+
+@kernel
+def stiffen(t, factor, spring):  # type: ignore[no-untyped-def]
+    """Make soft joints stiffer, along their lines first; returns what `measure` does then."""
+    settings = views.settings(t)
+    ratio = min(_STIFFER, 1.0 / settings[at.SOFT])
+    respond_stiffer(t, ratio)
+    factorise_matrix(t, factor)
+    newton_step(t, factor, spring)
+    return resist(t, ratio * settings[at.SOFT] if ratio == _STIFFER else 1.0)
+
+
+@kernel
+def resist(t, share):  # type: ignore[no-untyped-def]
+    """Have all joints resist with a ``share`` of their stiffness; returns what `measure` does then."""
+    views.settings(t)[at.SOFT] = share
+    return measure(t)
 
 
 @kernel

@@ -20,7 +20,8 @@ import numpy as np
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.energy import work_of_shifts, work_on_held
-from sim.kernels.kinematics import lag_of, let_go, quadratic, rates
+from sim.kernels.halfway import go_all_the_way, half_a_step_on, take_back
+from sim.kernels.kinematics import lag_of, let_go, rates
 from sim.kernels.layout import (
     BETA,
     COMMIT_WORDS,
@@ -130,6 +131,7 @@ def commit(t):  # type: ignore[no-untyped-def]
     out, old = floats(t[at.SCRATCH], COMMIT_WORDS), t[at.SCRATCH] + 8 * SCRATCH_STATE
     broke, flows, breakable = 0, False, t[at.BREAKABLE] == 1
     external, elastic, contact, viscous, numerical = 0.0, 0.0, 0.0, 0.0, 0.0
+    ahead = views.per_joint(t, at.SLOPE)
     plastic, to_come = ledger[LEDGER_TO_COME], 0.0
     for k in range(t[at.JOINTS]):
         r = result[k]
@@ -164,7 +166,8 @@ def commit(t):  # type: ignore[no-untyped-def]
         if settings[BETA] != 0.0:
             xl, yl, zl = rates(gradient, k, last, ia, last, ib)
             u, v, turn = lag * xl + lead * x, lag * yl + lead * y, lag * zl + lead * z
-            at_end += half_a_step_on(t, k, x, y, z, u, v, turn, whole - 1.0, out)
+            ahead[k, 0] = half_a_step_on(t, k, x, y, z, u, v, turn, whole - 1.0, out)
+            at_end += ahead[k, 0]
             second_half = 0.0
             # Where the next step is to find it; after implicit Euler, at q*.
             d[0], d[1], d[2] = r[0] + u, r[1] + v, r[2] + turn
@@ -198,7 +201,7 @@ def commit(t):  # type: ignore[no-untyped-def]
         if held < 1.0 or room < 1.0:
             # What was stored elastically, and what the joint still took of the step's share, is lost with it.
             lost += r[RESULT_ELASTIC] + held * (at_end - r[RESULT_ELASTIC])
-            at_start, at_end, second_half = 0.0, 0.0, 0.0
+            at_start, at_end, second_half, ahead[k, 0] = 0.0, 0.0, 0.0, 0.0
             r[RESULT_USED] = 1.0
             let_go(t, k, scale[k] * h)
             active[k] = 0
@@ -213,6 +216,9 @@ def commit(t):  # type: ignore[no-untyped-def]
         to_come += second_half
         viscous += damped
         numerical += given - stored
+    if settings[BETA] != 0.0:
+        over = take_back(t, elastic)
+        elastic, numerical = elastic - over, numerical + over
     t[at.FLOWING] = 1 if flows else 0
     ledger[LEDGER_EXTERNAL] += external
     ledger[LEDGER_ELASTIC] = elastic
@@ -257,24 +263,3 @@ def copy(source, target, count):  # type: ignore[no-untyped-def]
     there, here = floats(source, count), floats(target, count)
     for i in range(count):
         here[i] = there[i]
-
-
-@kernel
-def go_all_the_way(state, old, count, whole):  # type: ignore[no-untyped-def]
-    """Let a state that a law took from ``old`` to where it is now go ``whole`` times that way."""
-    now, before = floats(state, count), floats(old, count)
-    for i in range(count):
-        now[i] = before[i] + whole * (now[i] - before[i])
-
-
-@kernel
-def half_a_step_on(t, k, x, y, z, u, v, turn, more, out):  # type: ignore[no-untyped-def]
-    """Elastic energy of joint k half a step after its position, where the velocities are, less that at q*.
-
-    That is s·dq + ½ dq·K dq for dq = (u, v, turn), q_n + ½ h q̇₁ - q*, less the plastic flow after q*, which is ``more``
-    times that before it; with the rates of deformation q̇₁ = (x, y, z) after the step.
-    """
-    damping, s, stiff = views.damping(t), views.response(t)[k], views.stiffness(t)[k]
-    u, v, turn = u - more * out[FLOW], v - more * out[FLOW + 1], turn - more * out[FLOW + 2]
-    linear = (s[0] - damping[k, 0] * x) * u + (s[1] - damping[k, 1] * y) * v + (s[2] - damping[k, 2] * z) * turn
-    return linear + 0.5 * quadratic(stiff, u, v, turn)

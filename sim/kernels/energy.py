@@ -95,14 +95,17 @@ def work_of_shifts(t, k, column):  # type: ignore[no-untyped-def]
 
 @inlined
 def close(c, t):  # type: ignore[no-untyped-def]
-    """Book what bodies and contacts did in a step; the joints' part is booked by `commit`."""
+    """Book what bodies and contacts did in a step; the joints' part is booked by `commit`.
+
+    Returns by how much less work from outside is booked because moves were of other lengths than the step.
+    """
     ledger, settings, body_at = views.ledger(t), views.settings(t), views.body_at(t)
     start, end = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.WRITTEN)
     external, struck = views.per_body(t, at.EXTERNAL), views.per_body(t, at.CONTACT_IMPULSE)
     pattern, weight = views.per_body(t, at.PATTERN), views.weight(t)
     solved, factor = views.per_body(t, at.VELOCITY), settings[SPREAD_IMPULSE]
     touching, driven, turns = t[at.CONTACTS] > 0 or t[at.HEAD] != 0, t[at.SPREAD] == 1, t[at.TURNING] == 1
-    before, after, outside, turning, contact_work = 0.0, 0.0, 0.0, 0.0, 0.0
+    before, after, outside, turning, contact_work, less = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(t[at.MOVING]):
         moment = moment_of(floats(body_at[i], BODY_WORDS)) if turns else weight[i, INERTIA_I]
         for axis in range(3):
@@ -145,6 +148,7 @@ def close(c, t):  # type: ignore[no-untyped-def]
     ledger[LEDGER_KINETIC] = 0.5 * after
     ledger[LEDGER_NUMERICAL] -= turning
     ledger[LEDGER_CONTACT] += given - arrived
+    return less
 
 
 @kernel

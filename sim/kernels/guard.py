@@ -4,8 +4,9 @@ Directions of forces are those of a step's start, and a joint's force may turn r
 move between was made against the old one. The numerical dissipation shows what that creates: where bodies turn by an
 angle φ in a step under compression, a share of φ² of the energy, and where a yielding joint is thrown back, up to the
 plastic work of its last move. Taking out overlap may give energy, too; what contacts give beyond what they took is
-booked with it. Three things keep it from being negative in implicit Euler, one after the other:
+booked with it. Four things keep it from being negative in implicit Euler, one after the other:
 
+- work from outside counts along the mean velocity of the step, and not along moves of other lengths;
 - a contact's impulse that also balances joints within the step has lost no more in an impact than there was, and
   damping has taken no more;
 - what the step has created is taken out of the motion of the bodies relative to each other again: velocities go towards
@@ -17,7 +18,8 @@ booked with it. Three things keep it from being negative in implicit Euler, one 
 The average-acceleration rule neither dissipates nor creates where the step resolves the motion, and its numerical entry
 goes up and down a little. Pieces that turn by a radian in a step make it create ever more energy. So where any turns by
 more than a quarter of that, steps are taken by implicit Euler, and also once a tenth of the ledger's largest entry has
-been created, until that is gone. Parts by it in place of implicit Euler are kept from creating any, as that is.
+been created, until that is gone; a step that would create more than a tenth of the most that outer forces had done by
+then has the rest taken out as above. Parts by it in place of implicit Euler are kept from creating any, as that is.
 """
 
 import math
@@ -30,6 +32,7 @@ from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import (
     BETA,
     DELTA,
+    LARGEST,
     LEDGER_CONTACT,
     LEDGER_EXTERNAL,
     LEDGER_KINETIC,
@@ -72,8 +75,11 @@ def choose_scheme(t, spin):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def close_from_below(t, contact, viscous, numerical):  # type: ignore[no-untyped-def]
-    """Keep numerical dissipation from being negative; the ledger's entries as they were before this step [J]."""
+def close_from_below(t, contact, viscous, numerical, less):  # type: ignore[no-untyped-def]
+    """Keep numerical dissipation from being negative; the ledger's entries as they were before this step [J].
+
+    Work from outside that was booked ``less`` for moves of other lengths is booked where it is needed.
+    """
     ledger = views.ledger(t)
     if ledger[LEDGER_CONTACT] < 0.0:
         ledger[LEDGER_NUMERICAL] += ledger[LEDGER_CONTACT]
@@ -83,7 +89,11 @@ def close_from_below(t, contact, viscous, numerical):  # type: ignore[no-untyped
     # last one has created is taken back as soon as it moves.
     least = min(numerical, 0.0) if settings[WANTED_BETA] != 0.0 else 0.0
     if settings[BETA] != 0.0 and settings[WANTED_BETA] != 0.0:
-        return
+        settings[LARGEST] = max(settings[LARGEST], abs(ledger[LEDGER_EXTERNAL]))
+        least = min(least, -_BOUND * settings[LARGEST])
+    given = max(min(least - ledger[LEDGER_NUMERICAL], less), 0.0)
+    ledger[LEDGER_EXTERNAL] += given
+    ledger[LEDGER_NUMERICAL] += given
     if ledger[LEDGER_NUMERICAL] >= least:
         paid = min(ledger[LEDGER_OWED], max(ledger[LEDGER_NUMERICAL], 0.0))
         ledger[LEDGER_OWED] -= paid

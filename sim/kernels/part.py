@@ -69,8 +69,8 @@ def conclude(c, t):  # type: ignore[no-untyped-def]
     ledger = views.ledger(t)
     contact, viscous, numerical = ledger[LEDGER_CONTACT], ledger[LEDGER_VISCOUS], ledger[LEDGER_NUMERICAL]
     t[at.BROKE] += commit(t)
-    close(c, t)
-    close_from_below(t, contact, viscous, numerical)
+    less = close(c, t)
+    close_from_below(t, contact, viscous, numerical, less)
 
 
 @kernel

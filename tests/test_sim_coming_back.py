@@ -153,3 +153,20 @@ def test_what_the_user_has_called_after_a_step_stays_when_joints_come() -> None:
         space.step(1 / 60)
     assert len(told) == 10
     assert all(impulse > 0.0 for impulse in told[1:])
+
+
+def test_the_body_that_comes_first_in_a_structure_may_leave_while_others_touch() -> None:
+    space = falling()
+    joints = row(space, 3)
+    space.step(1 / 60)
+    structure = joints[0].structure
+    assert structure is not None
+    for body in (joints[0].b, joints[1].b, joints[2].b):
+        space.add(pymunk.Poly.create_box(body, (0.9, 0.1)))
+    ball = piece(space, 1.0, 0.1, 1.5, 0.1)
+    space.add(pymunk.Circle(ball, 0.05))
+    first = structure.bodies[0]
+    space.remove(*(joint for joint in joints if first in (joint.a, joint.b)), *first.shapes, first)
+    for _ in range(10):
+        space.step(1 / 60)
+    assert ball.position.y > -0.5

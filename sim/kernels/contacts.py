@@ -25,8 +25,9 @@ from sim.chipmunk import (
     ARBITER_WORDS,
     ARBITERS,
     BODY_FULL_WORDS,
-    BODY_SPACE,
     BODY_WORDS,
+    CONSTRAINT_SPACE,
+    CONSTRAINT_WORDS,
     CONTACT_BIAS,
     CONTACT_BOUNCE,
     CONTACT_BYTES,
@@ -158,8 +159,8 @@ def collect(c, t):  # type: ignore[no-untyped-def]
 
 @kernel
 def space_slop(t):  # type: ignore[no-untyped-def]
-    """By how much shapes may overlap in a structure's space [m]."""
-    return floats(integers(views.body_at(t)[0], BODY_FULL_WORDS)[BODY_SPACE], SPACE_WORDS)[SPACE_SLOP]
+    """By how much shapes may overlap in the space of a structure that is in a step [m]."""
+    return floats(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE], SPACE_WORDS)[SPACE_SLOP]
 
 
 @kernel

@@ -155,8 +155,8 @@ def _take_apart(space: pymunk.Space) -> Any:
     from sim.joint import DuctileJoint
 
     parts = space.__reduce_ex__(_PROTOCOL)
-    if not any(isinstance(constraint, DuctileJoint) for constraint in space.constraints):
-        return parts
+    if space not in _looked_after and not any(isinstance(one, DuctileJoint) for one in space.constraints):
+        return parts  # it has no joints, and never had any
     state = parts[2]
     return _empty, (type(space),), (state, SpaceState.of(space))
 

@@ -181,7 +181,8 @@ _OF_JOINTS = (at.ACTIVE, at.IMPULSE, at.GRADIENT, at.RESPONSE, at.RESULT, at.DEF
 _OF_BODIES = (at.LAST_VELOCITY, at.LAST_POSITION, at.LAST_FORCE, at.BEGUN_AT, at.SHIFT)
 _OF_FACTOR = (at.DIAGONAL, at.LOWER_BLOCKS)
 _KEPT = (*_OF_JOINTS, *_OF_BODIES, *_OF_FACTOR, at.SETTINGS, at.LEDGER)
-_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.SHIFTED, at.PARTS, at.ROOM)
+# How many contacts there were tells a step of another length whether bodies may be moved on, see `sim.kernels.moves`.
+_KEPT_CONTROL = (at.NEWTON_STEPS, at.UNCONVERGED, at.FLOWING, at.SHIFTED, at.PARTS, at.ROOM, at.CONTACTS)
 
 
 # A cache line in words of 8 bytes, and how many lines of distance keep arrays of equal length from lying alike in their

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pymunk
 import pytest
-from hard_cases import Case, chain, falls_on_the_ground, law, rests, struck
+from hard_cases import MASS, Case, chain, falls_on_the_ground, law, rests, struck
 
 from sim import AVERAGE_ACCELERATION, DuctileJoint, Limits
+from sim.kernels import layout as at
 
 
 def trajectory(space: pymunk.Space, steps: int = 60, dt: float = 1 / 240) -> bytes:
@@ -65,6 +66,36 @@ def test_what_pymunk_finds_anew_from_where_bodies_are_is_saved() -> None:
     trajectory(case.space, 20)
     saved = pickle.dumps(case.space)
     assert trajectory(pickle.loads(saved)) == trajectory(case.space)
+
+
+def test_what_is_left_when_all_joints_have_broken_goes_on_to_the_last_bit() -> None:
+    """Pieces that lie on each other and on the ground, as pymunk alone does not save them."""
+    case = chain(8, law(strength=1e-3), limits=Limits(rotation=1e-3, slip=1e-4), shapes=True)
+    for shape in case.space.shapes:
+        shape.filter = pymunk.ShapeFilter()
+    ground = pymunk.Segment(case.space.static_body, (-5.0, -0.3), (5.0, -0.3), 0.1)
+    ground.friction = 0.5
+    case.space.add(ground)
+    for k, body in enumerate(case.bodies):
+        body.velocity, body.angular_velocity = (0.0, -2.0 * (-1) ** k), 20.0
+    trajectory(case.space, 100)
+    assert not case.space.constraints
+    saved = pickle.dumps(case.space)
+    assert trajectory(pickle.loads(saved)) == trajectory(case.space)
+
+
+def test_a_step_of_another_length_after_a_contact_is_the_same_in_a_resumed_run() -> None:
+    """Bodies that touched something in the last step are not moved on, though nothing touches them any more."""
+    case = rests(10.0, MASS)
+    trajectory(case.space, 30, 1 / 60)
+    assert case.structure.tables.control[at.CONTACTS] > 0
+    resumed = pickle.loads(pickle.dumps(case.space))
+    found = []
+    for space in (case.space, resumed):
+        box = list(space.bodies)[-1]
+        box.position += (0.0, 5.0)
+        found.append(trajectory(space, 5, 1 / 100))
+    assert found[0] == found[1]
 
 
 def test_what_a_structure_has_been_through_is_saved() -> None:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 
+from capacity import InputError
 from sim.chipmunk import words
 from sim.installed import check, is_address
 from sim.tree_fields import (
@@ -105,11 +106,18 @@ class CollisionTrees:
     near: list[list[int]]
 
     @classmethod
-    def of(cls, space: pymunk.Space, shapes: Sequence[pymunk.Shape]) -> CollisionTrees | None:
-        """Those of ``space``, whose shapes are all listed; None when it uses a spatial hash."""
+    def of(cls, space: pymunk.Space, shapes: Sequence[pymunk.Shape]) -> CollisionTrees:
+        """Those of ``space``, whose shapes are all listed.
+
+        Raises
+        ------
+        InputError
+            When it uses a spatial hash.
+        """
         at = tree_addresses(space)
         if any(word_at(tree, KIND) != tree_kind() for tree in at):
-            return None
+            fault = "it uses a spatial hash, of which pymunk saves nothing, so it would not go on as it was"
+            raise InputError("space", fault, "make it without use_spatial_hash()")
         place = {shape_address(shape): i for i, shape in enumerate(shapes)}
         leaves = {place[word_at(leaf, SHAPE)]: leaf for tree in at for leaf in leaves_of(tree)}
         pairs: dict[int, int] = {}

@@ -35,12 +35,15 @@ class Touch:
         [s]
     closing : (float, float)
         By how much its velocity brings it on into what it touches, which may be on its way, too [m/s].
+    turning : float
+        By how much its spin does [rad/s]; that is not all of it where its velocity leads away.
     """
 
     body: pymunk.Body
     other: pymunk.Body
     time: float
     closing: tuple[float, float]
+    turning: float
 
 
 def first_touches(space: pymunk.Space, bodies: Iterable[pymunk.Body], dt: float) -> list[Touch]:
@@ -110,7 +113,7 @@ def hold_back(touch: Touch, dt: float) -> None:
     left = dt - touch.time
     body = touch.body
     body.position -= pymunk.Vec2d(*touch.closing) * left
-    body.angle -= next_move(body)[1] * left
+    body.angle -= touch.turning * left
 
 
 def pass_each_other(a: pymunk.Body, b: pymunk.Body) -> bool:
@@ -189,27 +192,32 @@ def _first_touch(own: _Way, other: _Way, dt: float, slop: float) -> Touch | None
         if distance <= 0.01 * slop:
             if distance <= 0.0 and time == 0.0:
                 return None
-            return Touch(a, b, min(time + 0.5 * slop / approach, dt), _closing(own.shape, other.shape, time))
+            return Touch(a, b, min(time + 0.5 * slop / approach, dt), *_closing(own.shape, other.shape, time))
         time += distance / approach
         if time >= dt:
             return None
-    return Touch(a, b, min(time, dt), _closing(own.shape, other.shape, time))
+    return Touch(a, b, min(time, dt), *_closing(own.shape, other.shape, time))
 
 
-def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[float, float]:
-    """Velocity of the first shape's body towards the other's surface where they touch, in ``time``."""
+def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[tuple[float, float], float]:
+    """Velocity and spin of the first shape's body towards the other's surface where they touch, in ``time``."""
     a, b = own.body, other.body
     assert a is not None
     assert b is not None
     here, there = shapely.get_coordinates(shapely.shortest_line(moved(own, time), moved(other, time)))
-    velocity_b, spin_b = next_move(b)
+    (velocity_a, spin_a), (velocity_b, spin_b) = next_move(a), next_move(b)
     arm = pymunk.Vec2d(*there) - (b.local_to_world(b.center_of_gravity) + velocity_b * time)
-    velocity = next_move(a)[0] - velocity_b - spin_b * arm.perpendicular()
+    velocity = velocity_a - velocity_b - spin_b * arm.perpendicular()
     normal = pymunk.Vec2d(*(there - here)).normalized()
     if normal == (0.0, 0.0):
-        return velocity.x, velocity.y
-    closing = max(0.0, velocity.dot(normal)) * normal
-    return closing.x, closing.y
+        return (velocity.x, velocity.y), spin_a
+    approach = velocity.dot(normal)
+    closing = max(0.0, approach) * normal
+    arm = pymunk.Vec2d(*here) - (a.local_to_world(a.center_of_gravity) + velocity_a * time)
+    by_turning = spin_a * arm.perpendicular().dot(normal)
+    # Where its centre is drawing back, turning goes on by as much as makes up for that.
+    share = max(0.0, 1.0 + approach / by_turning) if approach < 0.0 < by_turning else 1.0
+    return (closing.x, closing.y), share * spin_a
 
 
 def rounding(shape: pymunk.Shape) -> float:

@@ -68,7 +68,7 @@ class SpaceState:
     contacts : ContactGraph
     pushes : list of (Structure, list of (pymunk.Body, array))
         Loose bodies that structures moved along in the last step.
-    trees : CollisionTrees or None
+    trees : CollisionTrees
     """
 
     bodies: list[tuple[pymunk.Body, np.ndarray]]
@@ -80,7 +80,7 @@ class SpaceState:
     shapes: list[pymunk.Shape]
     contacts: ContactGraph
     pushes: list[tuple[Structure, list[tuple[pymunk.Body, np.ndarray]]]]
-    trees: CollisionTrees | None
+    trees: CollisionTrees
 
     @classmethod
     def of(cls, space: pymunk.Space) -> SpaceState:
@@ -122,8 +122,7 @@ class SpaceState:
             chipmunk.restore_body(body, numbers)
         for structure, pushes in self.pushes:
             structure.tables.restore_pushes([(chipmunk.body_address(body), by) for body, by in pushes])
-        if self.trees is not None:
-            self.trees.restore(space, self.shapes)
+        self.trees.restore(space, self.shapes)
         look_after(space)
 
     def _put_to_sleep(self, space: pymunk.Space) -> None:

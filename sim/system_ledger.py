@@ -142,7 +142,7 @@ class LooseLedger:
                         by_others -= done
         # Chipmunk keeps contacts for some steps in which shapes do not touch.
         oldest = self._stamp - self._space.collision_persistence
-        self._impulses = {key: one for key, one in kept.items() if one[0] >= oldest} | self._impulses
+        self._impulses = {key: one for key, one in kept.items() if one[0] > oldest} | self._impulses
         return work, by_others, lost
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scene import builtin_text, parse_scene
 from sim import Model, assemble, stop_at_first_touch
 from sim.chipmunk import overlap
-from sim.first_touch import first_touches, moved, rounding
+from sim.first_touch import first_touches, hold_back, moved, rounding
 
 CORNERS = [(-0.4, -0.2), (0.5, -0.3), (0.3, 0.4), (-0.2, 0.3)]
 KINDS = ["circle", "polygon", "rounded polygon", "segment"]
@@ -125,3 +125,20 @@ def test_what_broke_off_is_stopped_by_what_it_was_joined_to() -> None:
     space.remove(joint)
     (touch,) = stop_at_first_touch(space, 1 / 60)
     assert touch.time == pytest.approx(0.24 / 40.0, abs=space.collision_slop / 40.0)
+
+
+def test_what_meets_by_turning_while_its_centre_draws_back_stays_with_what_it_meets() -> None:
+    """A bar of 2 m that spins on its way up: its end comes down on a ball, from 20 mm above it."""
+    space = pymunk.Space()
+    space.collision_slop = 1e-4
+    bar, ball = pymunk.Body(10.0, 10.0 * 2.0**2 / 12.0), pymunk.Body(1.0, 0.01)
+    bar.velocity, bar.angular_velocity = (0.0, 4.0), -10.0
+    ball.position = (0.9, -0.17)
+    shape, round_one = pymunk.Poly.create_box(bar, (2.0, 0.1)), pymunk.Circle(ball, 0.1)
+    space.add(bar, ball, shape, round_one)
+    (touch,) = first_touches(space, [bar], 1 / 60)
+    assert 0.0 < touch.turning / -10.0 < 0.9
+    hold_back(touch, 1 / 60)
+    space.step(1 / 60)
+    # Where it was put back by all of its turn, they ended 50 mm apart.
+    assert abs(shape.point_query(ball.position).distance - 0.1) < 5e-3

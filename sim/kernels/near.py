@@ -193,7 +193,8 @@ def let_go(head, others, pushes, begun, free, rows):  # type: ignore[no-untyped-
             b = floats(others[i], BODY_WORDS)
             put(others[i], begun[i, 0], begun[i, 1], begun[i, 2])
             b[VX], b[VX + 1], b[SPIN] = free[i, 0], free[i, 1], free[i, 2]
-            floats(rows[i], LOOSE_WORDS)[IN_PARTS], rows[i] = math.nan, 0
+            if rows[i] != 0:
+                floats(rows[i], LOOSE_WORDS)[IN_PARTS], rows[i] = math.nan, 0
             for axis in range(3):
                 pushes[i, axis] = 0.0
             c = head

@@ -28,6 +28,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.complement import relative
 from sim.kernels.layout import (
+    AFTER_IMPULSES,
     BEFORE,
     BLOW,
     BLOW_AGE,
@@ -68,6 +69,8 @@ WORTH_OF_BLOW = 1e-3
 _MORE = 1e-3
 # How long a structure takes to turn and swing back, over how long it takes to turn.
 _BACK = 2.0
+# Of the blow's energy, taken by the joints when a structure turns that nothing damps.
+_TURNED = 0.25
 #: Of the blow's energy, lost in a second [1/s].
 OVER = 0.05
 
@@ -118,11 +121,14 @@ def takes_parts(head):  # type: ignore[no-untyped-def]
             c = t[at.NEXT]
     else:
         grow_older(head, kinetic, of_head[BEFORE + NEXT_MOVE])
-    in_parts = lasting > 0.0 and of_head[WHOLE_STEP] > longest(of_head, of_head[BLOW_AGE])
-    if not in_parts or reach(head, np.empty(MOST_LINKED, np.int64)) < 0:
+    if lasting == 0.0 or reach(head, np.empty(MOST_LINKED, np.int64)) < 0:
         forget(head)
         return False
-    return True
+    if of_head[WHOLE_STEP] > longest(of_head, of_head[BLOW_AGE]):
+        return True
+    if of_head[UNDAMPED] == 0.0 or is_over(head):
+        forget(head)
+    return False
 
 
 @kernel
@@ -148,8 +154,9 @@ def grow_older(head, kinetic, h):  # type: ignore[no-untyped-def]
 def is_over(head):  # type: ignore[no-untyped-def]
     """Whether a group has turned and swung back, or stores so much that its blow is little against it."""
     settings = views.settings(views.control(head))
-    # Without damping, stiff joints ring before anything else turns.
-    turned = settings[UNDAMPED] == 0.0 or settings[BLOW_MOST] - settings[BLOW_LEAST] >= WORTH * settings[BLOW]
+    # With hardly any damping, stiff joints ring before anything else turns.
+    taken = settings[BLOW_MOST] - settings[BLOW_LEAST]
+    turned = settings[UNDAMPED] != AFTER_IMPULSES or taken >= _TURNED * settings[BLOW]
     back = turned and settings[BLOW_AGE] >= _BACK * settings[BLOW_MOST_AT]
     return back or settings[BLOW] < settings[BLOW_SHARE] * sum_of(head, LEDGER_ELASTIC)
 

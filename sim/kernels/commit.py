@@ -24,6 +24,7 @@ from sim.kernels.halfway import go_all_the_way, half_a_step_on, take_back
 from sim.kernels.kinematics import lag_of, let_go, rates
 from sim.kernels.layout import (
     BETA,
+    BLOW,
     COMMIT_WORDS,
     DELTA,
     FLOW,
@@ -125,9 +126,9 @@ def commit(t):  # type: ignore[no-untyped-def]
     scale, result, settings = views.scale(t), views.result(t), views.settings(t)
     ledger, moving = views.ledger(t), t[at.MOVING]
     h, reach, whole = settings[STEP], reach_of(t), flow_share(t)
-    lag, lead = lag_of(settings), 0.5 * settings[at.NEXT_MOVE] - reach
+    lag, lead = lag_of(settings), 0.5 * h - reach
     stiff = t[at.DAMPED] == 1 and is_stiff(t, start, velocity)
-    averages = settings[WANTED_BETA] != 0.0
+    averages = settings[WANTED_BETA] != 0.0 or settings[BLOW] > 0.0
     out, old = floats(t[at.SCRATCH], COMMIT_WORDS), t[at.SCRATCH] + 8 * SCRATCH_STATE
     broke, flows, breakable = 0, False, t[at.BREAKABLE] == 1
     external, elastic, contact, viscous, numerical = 0.0, 0.0, 0.0, 0.0, 0.0

@@ -30,7 +30,11 @@ from sim.kernels import views
 from sim.kernels.bodies import load_velocities
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import (
+    AFTER_IMPULSES,
+    BEFORE,
     BETA,
+    BLOW,
+    BLOW_AGE,
     DELTA,
     LARGEST,
     LEDGER_CONTACT,
@@ -40,38 +44,61 @@ from sim.kernels.layout import (
     LEDGER_OWED,
     LEDGER_PLASTIC,
     LEDGER_VISCOUS,
-    STEP,
     UNDAMPED,
     WANTED_BETA,
     WANTED_DELTA,
+    WHOLE_STEP,
 )
+from sim.kernels.lengths import LONGEST_PART
+from sim.kernels.resolved import is_slow
 from sim.memory import floats, inlined, kernel
 
-# β and δ of the average-acceleration rule.
-_AVERAGE = 0.25, 0.0
+# β of the average-acceleration rule.
+_AVERAGE = 0.25
 # Shares of the ledger's largest entry: what is rounding, and what the average-acceleration rule may create; and by how
 # much bodies may turn in its steps [rad].
 _ROUNDING, _BOUND, _TURN = 1e-13, 0.1, 0.25
 
 
 @inlined
-def choose_scheme(t, spin):  # type: ignore[no-untyped-def]
-    """Time integration of a step or its parts, at whose start no body turns faster than ``spin``.
+def choose_scheme(t, turn):  # type: ignore[no-untyped-def]
+    """Time integration of a step or its parts, in which no body is to turn by more than ``turn``.
 
     That is the wanted one, or implicit Euler where the average-acceleration rule would fail; and that rule in place of
-    implicit Euler in parts after what came suddenly, and brought much, while nothing touches the structure.
+    implicit Euler while a blow lasts that is not to be damped, in steps or parts no longer than the longest of them.
     """
     settings, ledger = views.settings(t), views.ledger(t)
     beta, delta = settings[WANTED_BETA], settings[WANTED_DELTA]
     if beta == 0.0:
-        if t[at.PARTS] > 1 and settings[UNDAMPED] != 0.0 and t[at.CONTACTS] == 0 and spin * settings[STEP] <= _TURN:
-            beta, delta = _AVERAGE
+        short = t[at.PARTS] > 1 or (settings[BLOW] > 0.0 and settings[WHOLE_STEP] <= LONGEST_PART)
+        if settings[UNDAMPED] > 0.0 and short and t[at.CONTACTS] == 0 and turn <= _TURN and may_swing(t):
+            # What is set going at once begins with a jump, by which joints that yield would be left strained.
+            beta, delta = _AVERAGE, 1.0 - settings[UNDAMPED] if settings[BLOW_AGE] > 0.0 else 0.0
     else:
         largest = max(ledger[LEDGER_KINETIC], abs(ledger[LEDGER_EXTERNAL]))
         least = -_BOUND * largest if settings[BETA] != 0.0 else 0.0
-        if ledger[LEDGER_NUMERICAL] < least or spin * settings[STEP] > _TURN:
+        if ledger[LEDGER_NUMERICAL] < least or turn > _TURN:
             beta, delta = 0.0, 1.0
     settings[BETA], settings[DELTA] = beta, delta
+
+
+@kernel
+def may_swing(t):  # type: ignore[no-untyped-def]
+    """Whether what came suddenly is to be followed without damping; after forces, once what is stiff has settled."""
+    settings = views.settings(t)
+    if settings[UNDAMPED] == AFTER_IMPULSES or settings[BETA] != 0.0 or settings[BEFORE + BETA] != 0.0:
+        return True
+    return settings[BLOW_AGE] > 0.0 and is_slow(t)
+
+
+@kernel
+def choose_for_part(t, h):  # type: ignore[no-untyped-def]
+    """Time integration of a part of length ``h`` that begins with the start velocities; whether it is averaged."""
+    start, spin = views.per_body(t, at.START_VELOCITY), 0.0
+    for i in range(t[at.MOVING]):
+        spin = max(spin, abs(start[i, 2]))
+    choose_scheme(t, h * spin)
+    return views.settings(t)[BETA] != 0.0
 
 
 @inlined

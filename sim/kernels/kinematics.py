@@ -110,8 +110,8 @@ def prepare(t):  # type: ignore[no-untyped-def]
     settings, weight, last = views.settings(t), views.weight(t), views.per_body(t, at.LAST_VELOCITY)
     moving, lag, rounding, strayed, shift = t[at.MOVING], lag_of(settings), 0.0, 0.0, views.shift(t)
     # Straight on from the last step and straight back from this one lead to one place up to the third order, while both
-    # are of one length; as parts of the default scheme's steps are.
-    curved = 2.0 * lag * lag if settings[at.WANTED_BETA] != 0.0 and settings[at.UNEVEN] != 0.0 else 0.0
+    # are of one length.
+    curved = 2.0 * lag * lag if settings[at.UNEVEN] != 0.0 else 0.0
     for k in range(t[at.JOINTS]):
         if active[k] == 0:
             for i in range(at.GRADIENT_WORDS):

@@ -124,8 +124,9 @@ MOVE = 22
 BLOW_SHARE = 23
 # How far surfaces may move until their contacts are to be found anew, and have moved [m].
 MARGIN, TRAVEL = 24, 25
-# Whether impulses brought much of a structure's energy when nothing was on, see `sudden`.
-UNDAMPED = 26
+# 1 - δ of parts by the average-acceleration rule, or 0 for implicit Euler; what it is after impulses that bring much of
+# a structure's energy, and after what else comes suddenly, see `sudden`.
+UNDAMPED, AFTER_IMPULSES, AFTER_FORCES = 26, 0.98, 0.9
 # For how long the velocities that a step ends with are to move the bodies: `STEP`, but in parts of one, see `parts`.
 NEXT_MOVE = 27
 # Shortest part of a step while a blow lasts, see `lengths`.

@@ -13,9 +13,12 @@ Velocities belong to the middle of the moves that they make (see `energy`). From
 With h₁ instead, what speeds up while parts grow would gain energy, ½ (h₁ - h₀) times the power that speeds it up. So
 that these times sum up to the step's, its last part is as long as the move before its first: the shortest.
 
+The average-acceleration rule keeps energies between the middles of moves. With forces that act for h₁ and then h₂ the
+velocities between move bodies for ½ (h₁ + h₂), and no energy is gained or lost, whatever the lengths. After what has
+been set going these parts begin as short as after a blow.
+
 Where bodies turn by φ in a move, they end by a share of φ² from where joints would have them, and the next part puts
-that right within its length. After whole steps in which they turn much, parts begin longer. The average-acceleration
-rule, which damps nothing, keeps its energy where all parts are alike.
+that right within its length. After whole steps in which they turn much, parts begin longer.
 """
 
 import math
@@ -24,7 +27,7 @@ import numpy as np
 
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.layout import BETA, BLOW_AGE, MOVE, SHORTEST, UNDAMPED
+from sim.kernels.layout import AFTER_IMPULSES, BLOW_AGE, MOVE, SHORTEST, UNDAMPED, WANTED_BETA
 from sim.memory import kernel
 
 # Lengths of parts [s], and of the blow's age.
@@ -41,13 +44,19 @@ def note_shortest(head, struck):  # type: ignore[no-untyped-def]
     """Note how long the shortest part of a group's steps is to be from now on; whether it was ``struck``."""
     shortest, c = _LEAST if struck else LONGEST_PART, head
     while c != 0:
-        t = views.control(c)
-        start, settings = views.per_body(t, at.START_VELOCITY), views.settings(t)
-        for i in range(t[at.MOVING]):
-            turn = start[i, 2] * settings[MOVE]
-            shortest = max(shortest, min((turn / _TURN) ** 2, 1.0) * LONGEST_PART)
-        if settings[BETA] != 0.0:
+        settings = views.settings(views.control(c))
+        if struck and settings[WANTED_BETA] != 0.0:
             shortest = LONGEST_PART
+        elif not struck and settings[UNDAMPED] == AFTER_IMPULSES:
+            shortest = _LEAST
+        c = views.control(c)[at.NEXT]
+    c = head
+    while c != 0:
+        t = views.control(c)
+        last, settings = views.per_body(t, at.LAST_VELOCITY), views.settings(t)
+        for i in range(t[at.MOVING]):
+            turn = last[i, 2] * settings[MOVE]
+            shortest = max(shortest, min((turn / _TURN) ** 2, 1.0) * LONGEST_PART)
         c = t[at.NEXT]
     c = head
     while c != 0:
@@ -95,4 +104,20 @@ def part_lengths(settings, span):  # type: ignore[no-untyped-def]
     moves, steps = moves[: count + 1], np.empty(count + 1)
     for i in range(count + 1):
         steps[i] = 0.5 * (moves[i - 1] + moves[i])
+    return moves, steps
+
+
+@kernel
+def averaged_lengths(settings, span):  # type: ignore[no-untyped-def]
+    """The same for parts by the average-acceleration rule."""
+    reached, count = 0.0, 0
+    steps = np.empty(math.ceil(span / shortest_of(settings)) + 1)
+    while reached < span * (1.0 - _ROUNDING):
+        steps[count] = longest(settings, settings[BLOW_AGE] + reached)
+        reached += steps[count]
+        count += 1
+    steps = steps[:count] * (span / reached)
+    moves = steps.copy()
+    for i in range(count - 1):
+        moves[i] = 0.5 * (steps[i] + steps[i + 1])
     return moves, steps

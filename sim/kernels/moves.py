@@ -10,11 +10,13 @@ the one that begins at the middle of the last move lies ½ h V behind where the 
 
 and where it was h V, the rest is made up for; of a structure that nothing holds, in the motion of its bodies relative
 to their centre of mass, which leaves its angular momentum alone; and nothing while something touches it, for that would
-be left behind. Nothing either where the average-acceleration rule comes from the parts of a step (`parts.py`): what
-moves so soon after a blow is faster than whole steps resolve, and half a whole step of it tears stiff joints open.
+be left behind. Nothing either where the second-order scheme comes from the parts of a step (`parts.py`): what moves so
+soon after a blow is faster than whole steps resolve, and half a whole step of it tears stiff joints open.
 """
 
 import math
+
+import numpy as np
 
 from sim.chipmunk import BODY_WORDS, X
 from sim.kernels import layout as at
@@ -23,7 +25,7 @@ from sim.kernels.bare import clear
 from sim.kernels.bodies import move
 from sim.kernels.guard import relative_velocity, rigid_motion
 from sim.kernels.inertia import mass_of
-from sim.kernels.layout import BETA, MOVE, UNEVEN
+from sim.kernels.layout import BETA, MOVE, UNEVEN, WANTED_BETA
 from sim.memory import floats, inlined, kernel
 
 # Over the step: what is rounding.
@@ -33,7 +35,7 @@ _SAME = 1e-9
 @inlined
 def carry(t, h, last_move, moved, touching):  # type: ignore[no-untyped-def]
     """Have bodies that have ``moved`` for so long moved as far as they should be, and note how long that is."""
-    settings, body_at = views.settings(t), views.body_at(t)
+    settings = views.settings(t)
     if t[at.CARRYING] == 1:
         clear(views.per_body(t, at.CARRIED))
         t[at.CARRYING] = 0
@@ -44,29 +46,40 @@ def carry(t, h, last_move, moved, touching):  # type: ignore[no-untyped-def]
     rest = (last_move if implicit else 0.5 * (last_move + h)) - moved
     if last_move == 0.0 or abs(rest) <= _SAME * h or touching or t[at.CONTACTS] != 0:
         return
-    if not implicit and t[at.AFTER_PARTS] == 1:
+    if settings[WANTED_BETA] != 0.0 and not implicit and t[at.AFTER_PARTS] == 1:
         return
     last = views.per_body(t, at.LAST_VELOCITY)
     for i in range(t[at.MOVING], t[at.BODIES]):
         if last[i, 0] != 0.0 or last[i, 1] != 0.0 or last[i, 2] != 0.0:
             return
     t[at.CARRYING] = 1
-    x, y, u, v, _ = rigid_motion(t, last)
-    frame = x, y, u, v, 0.0
+    carried = views.per_body(t, at.CARRIED)
     for i in range(t[at.MOVING]):
-        u, v, w = relative_velocity(body_at[i], last[i], frame)
-        carry_on(t, i, rest * u, rest * v, rest * w)
+        for axis in range(3):
+            carried[i, axis] = rest * last[i, axis]
+    shift_all(t, carried)
     settings[MOVE] = last_move if implicit else h
 
 
 @kernel
-def carry_on(t, i, x, y, turn):  # type: ignore[no-untyped-def]
-    """Move body i, and note by what."""
-    carried = views.per_body(t, at.CARRIED)
-    move(views.body_at(t)[i], x, y, turn)
-    carried[i, 0] += x
-    carried[i, 1] += y
-    carried[i, 2] += turn
+def carry_on(t, time):  # type: ignore[no-untyped-def]
+    """Have the last velocities move the bodies for so much longer."""
+    last, way = views.per_body(t, at.LAST_VELOCITY), np.empty((t[at.MOVING], 3))
+    for i in range(t[at.MOVING]):
+        for axis in range(3):
+            way[i, axis] = time * last[i, axis]
+    shift_all(t, way)
+
+
+@kernel
+def shift_all(t, way):  # type: ignore[no-untyped-def]
+    """Move the bodies by their ``way``, which becomes one that leaves the centre of what nothing holds where it is."""
+    body_at = views.body_at(t)
+    x, y, u, v, _ = rigid_motion(t, way)
+    frame = x, y, u, v, 0.0
+    for i in range(t[at.MOVING]):
+        way[i, 0], way[i, 1], way[i, 2] = relative_velocity(body_at[i], way[i], frame)
+        move(body_at[i], way[i, 0], way[i, 1], way[i, 2])
 
 
 @kernel

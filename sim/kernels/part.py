@@ -17,9 +17,9 @@ from sim.kernels.commit import commit
 from sim.kernels.complement import relative
 from sim.kernels.contacts import SETTLE, kept, meet, space_slop
 from sim.kernels.energy import close
-from sim.kernels.guard import close_from_below
+from sim.kernels.guard import choose_for_part, close_from_below
 from sim.kernels.inertia import add_inertia, mass_of, moment_of, weigh
-from sim.kernels.kinematics import quadratic, rates, take_up
+from sim.kernels.kinematics import take_up
 from sim.kernels.layout import (
     BETA,
     BOUNCE,
@@ -43,7 +43,7 @@ from sim.kernels.layout import (
     WHERE,
     WHOLE_STEP,
 )
-from sim.kernels.resolved import prepare_step
+from sim.kernels.resolved import loss_of_joints, prepare_step
 from sim.kernels.rows import other_velocity
 from sim.memory import floats, inlined, kernel
 
@@ -157,13 +157,19 @@ def end_part(head, others, before, pushes, move_on, step):  # type: ignore[no-un
         clear(views.per_body(t, at.CONTACT_IMPULSE))
         settings = views.settings(t)
         take_up(t, ratio, settings[STEP])
-        settings[STEP], settings[STEP_RATIO], settings[MOVE], settings[NEXT_MOVE] = step, move_on / h, h, move_on
+        averaged = settings[BETA] != 0.0
+        settings[STEP_RATIO] = ratio if averaged else move_on / h
+        settings[STEP], settings[NEXT_MOVE] = step, move_on
         scale_all(views.per_body(t, at.EXTERNAL), ratio)
         if t[at.SHIFTED] == 1:
             clear(views.shift(t))
             t[at.SHIFTED] = 0
+        if choose_for_part(t, step):
+            settings[MOVE] = step
         renew(t)
-        prepare_step(t, views.settings(t)[BETA] != 0.0)
+        prepare_step(t, averaged)
+        if settings[BETA] == 0.0:
+            settings[MOVE] = h
         c = t[at.NEXT]
     scale_all(pushes, ratio)
     return lost
@@ -198,15 +204,4 @@ def loss(head, others, before, pushes):  # type: ignore[no-untyped-def]
             x, y = b[VX] - before[i, 0] - pushes[i, 0], b[VX + 1] - before[i, 1] - pushes[i, 1]
             w = b[SPIN] - before[i, 2] - pushes[i, 2]
             lost += 0.5 * (mass_of(b) * (x * x + y * y) + moment_of(b) * w * w)
-    return lost
-
-
-@kernel
-def loss_of_joints(t, velocity):  # type: ignore[no-untyped-def]
-    """Elastic energy ½ Δq·K Δq of what the joints are deformed by at these velocities in a part [J]."""
-    joint_bodies, gradient, stiffness = views.joint_bodies(t), views.gradient(t), views.stiffness(t)
-    h, lost = views.settings(t)[STEP], 0.0
-    for k in range(t[at.JOINTS]):
-        x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
-        lost += 0.5 * h * h * quadratic(stiffness[k], x, y, z)
     return lost

@@ -32,12 +32,14 @@ from sim.kernels import views
 from sim.kernels.bare import clear
 from sim.kernels.blow import OVER, forget, grow_older, is_over
 from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
-from sim.kernels.guard import choose_scheme
+from sim.kernels.guard import choose_for_part
 from sim.kernels.kinematics import prepare
 from sim.kernels.late import go_back, lateness
 from sim.kernels.layout import (
+    BEFORE,
     BETA,
     BLOW,
+    BLOW_AGE,
     CACHED,
     EARLIER,
     MOVE,
@@ -51,9 +53,9 @@ from sim.kernels.layout import (
     WHERE,
     WHOLE_STEP,
 )
-from sim.kernels.lengths import part_lengths
+from sim.kernels.lengths import LONGEST_PART, averaged_lengths, part_lengths
 from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_links
-from sim.kernels.moves import keep_moment
+from sim.kernels.moves import carry_on, keep_moment
 from sim.kernels.near import fall_behind, hand_over, let_go, look, stand_in
 from sim.kernels.newton import restart
 from sim.kernels.noted import BEGUN, note_given, note_last, note_parts, note_way, note_ways, row_of
@@ -87,7 +89,8 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
     go_back(head, others, pushes, late)
     note_given(rows, others, 1.0)
     whole, span = settings[WHOLE_STEP], settings[WHOLE_STEP] + late
-    moves, steps = part_lengths(settings, span)
+    averaged = begin_schemes(head)
+    moves, steps = averaged_lengths(settings, span) if averaged else part_lengths(settings, span)
     open_step(head, late, moves, steps)
     scale_all(pushes, steps[0] / whole)
     stand_in(head)
@@ -157,24 +160,40 @@ def open_step(head, late, moves, steps):  # type: ignore[no-untyped-def]
             if touches[k, STRIKE] > 0.0:
                 touches[k, PUSH] = 0.0
         store_velocities(t, views.per_body(t, at.START_VELOCITY))
-        begin_scheme(t)
+        if settings[BETA] != 0.0 and settings[WANTED_BETA] == 0.0:
+            if settings[BEFORE + BETA] != 0.0:
+                carry_on(t, 0.5 * (settings[STEP] - settings[MOVE]))
+            # Implicit Euler's velocities count as those with which such a part would have ended.
+            settings[MOVE] = settings[STEP]
         renew(t)
         prepare(t)
         c = t[at.NEXT]
 
 
 @kernel
-def begin_scheme(t):  # type: ignore[no-untyped-def]
-    """Choose the time integration of a step's parts.
+def begin_schemes(head):  # type: ignore[no-untyped-def]
+    """Choose the time integration of the parts of a group; whether all are taken by the average-acceleration rule."""
+    averaged, c = True, head
+    while c != 0:
+        averaged = choose_for_part(views.control(c), LONGEST_PART) and averaged
+        c = views.control(c)[at.NEXT]
+    return averaged
 
-    Implicit Euler's velocities, before the first of them, count as those with which such a part would have ended.
-    """
-    settings, start, spin = views.settings(t), views.per_body(t, at.START_VELOCITY), 0.0
-    for i in range(t[at.MOVING]):
-        spin = max(spin, abs(start[i, 2]))
-    choose_scheme(t, spin)
-    if settings[BETA] != 0.0 and settings[WANTED_BETA] == 0.0:
-        settings[MOVE] = settings[STEP]
+
+@kernel
+def begin_whole(head):  # type: ignore[no-untyped-def]
+    """Begin a step that is as short as a part by the rule for those, if something came suddenly in it."""
+    if views.settings(views.control(head))[BLOW_AGE] > 0.0:
+        return
+    begin_schemes(head)
+    c = head
+    while c != 0:
+        t = views.control(c)
+        settings = views.settings(t)
+        if settings[BETA] != 0.0 and settings[BEFORE + BETA] == 0.0:
+            settings[MOVE] = settings[STEP]
+            prepare(t)
+        c = t[at.NEXT]
 
 
 @kernel

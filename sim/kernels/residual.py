@@ -21,9 +21,12 @@ from sim.memory import call_law, floats, inlined, kernel
 
 @inlined
 def reach_of(t):  # type: ignore[no-untyped-def]
-    """How far q* follows the new velocities: (β + δ) h, with h for how long they are to move the bodies [s]."""
+    """How far q* follows the new velocities: (β + δ) h [s].
+
+    h is for how long they are to move the bodies in implicit Euler, the step in the average-acceleration rule.
+    """
     settings = views.settings(t)
-    return settings[at.NEXT_MOVE] * (settings[at.BETA] + settings[at.DELTA])
+    return settings[at.NEXT_MOVE if settings[at.BETA] == 0.0 else STEP] * (settings[at.BETA] + settings[at.DELTA])
 
 
 @inlined

@@ -13,15 +13,19 @@ energy that there is, the step is taken by implicit Euler.
 
 Implicit Euler finds deformations at the end of a move instead, ½ h J V further on, so the step after one of its own is
 averaged again where that is little: not while anything in it moves faster than the steps resolve. A structure that
-moved before there were joints begins with a step of implicit Euler, too. In the default scheme, which averages only in
-parts after what came suddenly, the parts that follow are of implicit Euler from then on.
+moved before there were joints begins with a step of implicit Euler, too. In the default scheme, which averages only
+after what came suddenly, what follows forces is of implicit Euler from then on.
 """
 
+from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.kinematics import prepare
-from sim.kernels.layout import BETA, DELTA, LEDGER_ELASTIC, LEDGER_KINETIC, ROUNDING, UNDAMPED
-from sim.memory import inlined
+from sim.kernels.kinematics import prepare, quadratic, rates
+from sim.kernels.layout import AFTER_FORCES, BETA, DELTA, LEDGER_ELASTIC, LEDGER_KINETIC, ROUNDING, STEP, UNDAMPED
+from sim.kernels.lengths import LONGEST_PART
+from sim.memory import inlined, kernel
 
+# (ωh)² of what is slow.
+_SLOW = 0.25
 # Of a structure's energy: after a step of the average-acceleration rule, and of implicit Euler.
 _STRAYED, _BETWEEN = 1e-2, 0.1
 
@@ -36,5 +40,26 @@ def prepare_step(t, averaged):  # type: ignore[no-untyped-def]
     share = _STRAYED if averaged else _BETWEEN
     strayed = prepare(t) > share * (ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC]) + settings[ROUNDING]
     if strayed:
-        settings[BETA], settings[DELTA], settings[UNDAMPED] = 0.0, 1.0, 0.0
+        settings[BETA], settings[DELTA] = 0.0, 1.0
+        if settings[UNDAMPED] == AFTER_FORCES:
+            settings[UNDAMPED] = 0.0
         prepare(t)
+
+
+@kernel
+def is_slow(t):  # type: ignore[no-untyped-def]
+    """Whether what moves in a structure does so with less than half a radian of its vibration in a part."""
+    last, step = views.per_body(t, at.LAST_VELOCITY), views.settings(t)[STEP]
+    part = min(step, LONGEST_PART) / step
+    return part * part * loss_of_joints(t, last) <= _SLOW * views.ledger(t)[LEDGER_KINETIC]
+
+
+@kernel
+def loss_of_joints(t, velocity):  # type: ignore[no-untyped-def]
+    """Elastic energy ½ Δq·K Δq of what the joints are deformed by at these velocities in a part [J]."""
+    joint_bodies, gradient, stiffness = views.joint_bodies(t), views.gradient(t), views.stiffness(t)
+    h, lost = views.settings(t)[STEP], 0.0
+    for k in range(t[at.JOINTS]):
+        x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
+        lost += 0.5 * h * h * quadratic(stiffness[k], x, y, z)
+    return lost

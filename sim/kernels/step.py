@@ -12,7 +12,7 @@ from sim.kernels.contacts import collect, hand_back
 from sim.kernels.guard import choose_scheme
 from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import take_up
-from sim.kernels.layout import BEFORE
+from sim.kernels.layout import BEFORE, BLOW
 from sim.kernels.moves import carry
 from sim.kernels.near import drop, gather, let_come
 from sim.kernels.newton import restart
@@ -20,7 +20,7 @@ from sim.kernels.noted import note_end, note_start
 from sim.kernels.others import even_out, note_pushes
 from sim.kernels.owners import constraints_of
 from sim.kernels.part import conclude
-from sim.kernels.parts import close_step, take_parts
+from sim.kernels.parts import begin_whole, close_step, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.resolved import prepare_step
 from sim.kernels.settle import book_cached, finite, settle_bounces
@@ -59,7 +59,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
         if t[at.FAULT] >= 0:
             # Python notes how all else in the space is.
             call_notice(t[at.NOTICE], t[at.KEY])
-    choose_scheme(t, spin)
+    choose_scheme(t, h * spin)
     take_up(t, ratio, last_step)
     carry(t, h, last_move, moved, touching)
     add_inertia(t)
@@ -125,6 +125,8 @@ def solve(c):  # type: ignore[no-untyped-def]
             touching = let_come(c) or touching
             keep(c)
             converged = take_parts(c, fresh, touching)
+        elif views.settings(head)[BLOW] > 0.0:
+            begin_whole(c)
         member = c
         while member != 0:
             t = views.control(member)

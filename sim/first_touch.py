@@ -49,8 +49,9 @@ class Touch:
 def first_touches(space: pymunk.Space, bodies: Iterable[pymunk.Body], dt: float) -> list[Touch]:
     """Those of ``bodies`` that come to touch something within their next move of ``dt`` [s], and when.
 
-    Contacts that are there already do not count; nor does the motion of what is not among ``bodies`` and comes from
-    outside of their way. Of two that touch each other, the first alone is told, who is to give way to the other.
+    What overlaps already does not count, but for corners that come down on the ground, or on what else is not dynamic;
+    nor does the motion of what is not among ``bodies`` and comes from outside of their way. Of two that touch each
+    other, the first alone is told, who is to give way to the other.
     """
     touches: list[Touch] = []
     for body in bodies:
@@ -168,52 +169,89 @@ def _corners(shape: pymunk.Shape) -> list[pymunk.Vec2d]:
     return [shape.a, shape.b]
 
 
-def _gap(own: _Way, other: _Way, time: float) -> float:
-    """Distance of two shapes that do not overlap: that of a corner of one from the other."""
-    gap = min(other.distance(corner, time) for corner in own.corners(time)) - own.radius
-    if isinstance(own.shape, pymunk.Circle):
-        return gap
-    return min(gap, min(own.distance(corner, time) for corner in other.corners(time)) - other.radius)
+class _Pair:
+    """Corners of two shapes that may come to touch the other one: all of them while the shapes are apart.
+
+    A bar that stands on the ground on one end comes down on the other. Of shapes that overlap, those corners count that
+    are not in the other one, and will be within ``dt`` [s], but for ``slop`` [m].
+    """
+
+    def __init__(self, own: _Way, other: _Way, dt: float, slop: float) -> None:
+        self.own, self.other = own, other
+        apart = not overlap(own.shape, other.shape)
+
+        def coming(way: _Way, onto: _Way) -> list[int]:
+            now, then = way.corners(0.0), way.corners(dt)
+            reach = way.radius + slop
+            return [
+                i
+                for i in range(len(now))
+                if apart or onto.distance(now[i], 0.0) - reach > -2.0 * slop > onto.distance(then[i], dt) - reach
+            ]
+
+        self._own = coming(own, other)
+        self._others = [] if isinstance(own.shape, pymunk.Circle) else coming(other, own)
+
+    def gap(self, time: float) -> float:
+        """Distance of the shapes in ``time``: that of a corner of one from the other."""
+        own, other = self.own, self.other
+        mine, theirs = own.corners(time), other.corners(time)
+        gaps = [other.distance(mine[i], time) - own.radius for i in self._own]
+        gaps += [own.distance(theirs[i], time) - other.radius for i in self._others]
+        return min(gaps, default=math.inf)
+
+    def line(self, time: float) -> tuple[pymunk.Vec2d, pymunk.Vec2d]:
+        """Points of the two shapes, without their rounding, that are nearest in ``time``."""
+        own, other = self.own, self.other
+        mine, theirs = own.corners(time), other.corners(time)
+        lines = [
+            shapely.shortest_line(shapely.MultiPoint([mine[i] for i in self._own]), moved(other.shape, time)),
+            shapely.shortest_line(moved(own.shape, time), shapely.MultiPoint([theirs[i] for i in self._others])),
+        ]
+        nearest = min((line for line in lines if line is not None), key=shapely.length)
+        here, there = shapely.get_coordinates(nearest)
+        return pymunk.Vec2d(*here), pymunk.Vec2d(*there)
 
 
 def _first_touch(own: _Way, other: _Way, dt: float, slop: float) -> Touch | None:
     """When the two shapes first touch, in a move of ``dt``; a little later, so that Chipmunk sees it."""
-    if overlap(own.shape, other.shape):
-        return None
     a, b = own.shape.body, other.shape.body
     assert a is not None
     assert b is not None
     approach = abs(own.velocity - other.velocity) + own.fastest_turn + other.fastest_turn
     if approach == 0.0:
         return None
-    time = 0.0
+    meets = overlap(own.shape, other.shape)
+    if meets and b.body_type == pymunk.Body.DYNAMIC:
+        return None
+    pair, time = _Pair(own, other, dt, slop), 0.0
     for _ in range(_MOST_ADVANCES):
-        distance = _gap(own, other, time)
+        distance = pair.gap(time)
         if distance <= 0.01 * slop:
-            if distance <= 0.0 and time == 0.0:
+            if distance <= 0.0 and time == 0.0 and not meets:
                 return None
-            return Touch(a, b, min(time + 0.5 * slop / approach, dt), *_closing(own.shape, other.shape, time))
+            return Touch(a, b, min(time + 0.5 * slop / approach, dt), *_closing(pair, time))
         time += distance / approach
         if time >= dt:
             return None
-    return Touch(a, b, min(time, dt), *_closing(own.shape, other.shape, time))
+    return Touch(a, b, min(time, dt), *_closing(pair, time))
 
 
-def _closing(own: pymunk.Shape, other: pymunk.Shape, time: float) -> tuple[tuple[float, float], float]:
+def _closing(pair: _Pair, time: float) -> tuple[tuple[float, float], float]:
     """Velocity and spin of the first shape's body towards the other's surface where they touch, in ``time``."""
-    a, b = own.body, other.body
+    a, b = pair.own.shape.body, pair.other.shape.body
     assert a is not None
     assert b is not None
-    here, there = shapely.get_coordinates(shapely.shortest_line(moved(own, time), moved(other, time)))
+    here, there = pair.line(time)
     (velocity_a, spin_a), (velocity_b, spin_b) = next_move(a), next_move(b)
-    arm = pymunk.Vec2d(*there) - (b.local_to_world(b.center_of_gravity) + velocity_b * time)
+    arm = there - (b.local_to_world(b.center_of_gravity) + velocity_b * time)
     velocity = velocity_a - velocity_b - spin_b * arm.perpendicular()
-    normal = pymunk.Vec2d(*(there - here)).normalized()
+    normal = (there - here).normalized()
     if normal == (0.0, 0.0):
         return (velocity.x, velocity.y), spin_a
     approach = velocity.dot(normal)
     closing = max(0.0, approach) * normal
-    arm = pymunk.Vec2d(*here) - (a.local_to_world(a.center_of_gravity) + velocity_a * time)
+    arm = here - (a.local_to_world(a.center_of_gravity) + velocity_a * time)
     by_turning = spin_a * arm.perpendicular().dot(normal)
     # Where its centre is drawing back, turning goes on by as much as makes up for that.
     share = max(0.0, 1.0 + approach / by_turning) if approach < 0.0 < by_turning else 1.0

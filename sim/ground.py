@@ -23,6 +23,8 @@ Vector = tuple[float, float]
 # A block that would come out elsewhere is halved so many times at most, and no more than this counts as coming out [m].
 _MOST_HALVINGS = 40
 _TOUCH = 1e-9
+# Further than any block reaches [m].
+_BEYOND = 1e3
 # Cosine of the sharpest bend upwards that blocks follow, 120°.
 _SHARP = -0.5
 # Sine of a bend that is none.
@@ -50,13 +52,18 @@ def blocks(ground: Ground) -> list[list[Vector]]:
     stretches = list(itertools.pairwise(_bends(points)))
     directions = [_direction(a, b) for a, b in stretches]
     closed = points[0] == points[-1]
+    # The ground goes on straight at both ends, for blocks not to come out of it there.
+    (x, y), (u, v) = stretches[0][0], directions[0]
+    beyond = [] if closed else [((x - _BEYOND * u, y - _BEYOND * v), (x, y))]
+    (x, y), (u, v) = stretches[-1][1], directions[-1]
+    beyond += [] if closed else [((x, y), (x + _BEYOND * u, y + _BEYOND * v))]
     found = []
     for i, (a, b) in enumerate(stretches):
         own = directions[i]
         before = directions[i - 1] if i > 0 or closed else own
         after = directions[(i + 1) % len(directions)] if i + 1 < len(directions) or closed else own
         edges = _edge_below(own, before, own), _edge_below(own, own, after)
-        others = shapely.MultiLineString(stretches[:i] + stretches[i + 1 :])
+        others = shapely.MultiLineString(stretches[:i] + stretches[i + 1 :] + beyond)
         thickness = float(ground.thickness)
         for _ in range(_MOST_HALVINGS):
             corners = _block(a, b, edges, thickness)

@@ -47,8 +47,8 @@ def test_blocks_fill_the_ground_under_their_line_and_nothing_else(steps: list[tu
         assert shapely.distance(shapely.LineString([a, b]), block.boundary) < 1e-12
         middle = shapely.Point(0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]) - 1e-5)
         assert block.distance(middle) < 1e-6
-    for one, other in itertools.combinations(found, 2):
-        assert shapely.intersection(one, other).area < 0.5 * min(one.area, other.area)
+    for one, other in itertools.pairwise(found):
+        assert shapely.intersection(one, other).area < 1e-6
 
 
 def test_a_wall_is_as_thick_as_it_is_drawn() -> None:

@@ -28,6 +28,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.complement import relative
 from sim.kernels.layout import (
+    AFTER_FORCES,
     AFTER_IMPULSES,
     BEFORE,
     BLOW,
@@ -69,7 +70,7 @@ WORTH_OF_BLOW = 1e-3
 _MORE = 1e-3
 # How long a structure takes to turn and swing back, over how long it takes to turn.
 _BACK = 2.0
-# Of the blow's energy, taken by the joints when a structure turns that nothing damps.
+# Of the energy of a blow that is not damped, or of what moves after forces, taken by the joints when a structure turns.
 _TURNED = 0.25
 #: Of the blow's energy, lost in a second [1/s].
 OVER = 0.05
@@ -153,10 +154,14 @@ def grow_older(head, kinetic, h):  # type: ignore[no-untyped-def]
 @kernel
 def is_over(head):  # type: ignore[no-untyped-def]
     """Whether a group has turned and swung back, or stores so much that its blow is little against it."""
-    settings = views.settings(views.control(head))
+    t = views.control(head)
+    settings, to_turn = views.settings(t), 0.0
     # With hardly any damping, stiff joints ring before anything else turns.
-    taken = settings[BLOW_MOST] - settings[BLOW_LEAST]
-    turned = settings[UNDAMPED] != AFTER_IMPULSES or taken >= _TURNED * settings[BLOW]
+    if settings[UNDAMPED] == AFTER_IMPULSES:
+        to_turn = settings[BLOW]
+    elif settings[UNDAMPED] == AFTER_FORCES and t[at.FREE] == 0:
+        to_turn = sum_of(head, LEDGER_KINETIC) - settings[BLOW_KINETIC]
+    turned = settings[BLOW_MOST] - settings[BLOW_LEAST] >= _TURNED * to_turn
     back = turned and settings[BLOW_AGE] >= _BACK * settings[BLOW_MOST_AT]
     return back or settings[BLOW] < settings[BLOW_SHARE] * sum_of(head, LEDGER_ELASTIC)
 

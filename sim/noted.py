@@ -46,7 +46,7 @@ class Notes:
         self._lists: list[np.ndarray] = []
 
     def look(self, space: pymunk.Space) -> None:
-        """Look through ``space``, in a step that has begun."""
+        """Look through ``space``, in a step that has begun; what another structure has noted of it stays."""
         table, known = self.table, {int(row[0].view(np.int64)): row for row in self.loose}
         self._lists = [chipmunk.listed(space, which).copy() for which in (MOVING_BODIES, CONSTRAINTS_OF_SPACE)]
         table[at.LISTS : at.LISTS + 2] = [one.ctypes.data for one in self._lists]
@@ -68,8 +68,9 @@ class Notes:
         own = [
             (chipmunk.address(c._constraint) + 8 * CONTROL, len(one)) for c, one in zip(others, self.stock, strict=True)
         ]
-        self._own = np.array(own, dtype=np.int64).reshape(-1, at.STOCK_WORDS)
-        self._numbers = np.zeros(sum(map(len, self.stock)))
+        before, self._own = self._own, np.array(own, dtype=np.int64).reshape(-1, at.STOCK_WORDS)
+        if not np.array_equal(self._own, before):
+            self._numbers = np.zeros(sum(map(len, self.stock)))
         own_joints = {chipmunk.address(joint._constraint) for joint in joints}
         ties = [(place, one) for place, one in enumerate(self._lists[1].tolist()) if one not in own_joints]
         self._ties = np.zeros((len(ties), TIE_WORDS), dtype=np.int64)
@@ -77,7 +78,9 @@ class Notes:
         table[[at.TIES, at.TIES_COUNT]] = self._ties.ctypes.data, len(ties)
         arbiters = chipmunk.listed(space, ARBITERS_OF_SPACE).tolist()
         count = sum(len(chipmunk.contacts_of(arbiter)) for arbiter in arbiters)
-        self._contacts = np.zeros((_ROOM + _SPARE * count, at.CONTACT_ROW))
+        begun = self.contacts
+        self._contacts = np.zeros((_ROOM + _SPARE * max(count, len(begun)), at.CONTACT_ROW))
+        self._contacts[: len(begun)] = begun
         table[[at.LOOSE, at.LOOSE_COUNT]] = self.loose.ctypes.data, len(self.loose)
         table[[at.STOCK, at.STOCK_COUNT, at.STOCK_NUMBERS]] = (
             self._own.ctypes.data,

@@ -13,6 +13,7 @@ from sim import DuctileJoint, SolverError, Structure, chipmunk
 from sim.compiling import law_function
 from sim.kernels import layout as at
 from sim.memory import floats
+from sim.noted import notes_known
 
 
 def struck() -> Case:
@@ -258,3 +259,24 @@ def test_the_error_of_structures_that_touch_comes_once() -> None:
         space.step(1 / 60)
     for _ in range(3):
         space.step(1 / 60)
+
+
+def test_a_structure_that_joins_a_step_leaves_what_was_noted_of_it() -> None:
+    """A box lies on the ground; two more bars come into the space together, the second of which looks for itself."""
+    case = chain(3, law())
+    box = pymunk.Body(1.0, 1.0)
+    ground = pymunk.Segment(case.space.static_body, (50.0, 0.0), (60.0, 0.0), 0.1)
+    box.position = (55.0, 0.6)
+    case.space.add(box, pymunk.Poly.create_box(box, (1.0, 1.0)), ground)
+    for _ in range(5):
+        case.space.step(1 / 60)
+    for x in (70.0, 80.0):
+        bar = pymunk.Body(1.0, 1.0)
+        bar.position = (x, 0.0)
+        case.space.add(bar, DuctileJoint(case.space.static_body, bar, (x, 0.0), case.structure.joints[0].law))
+    case.space.step(1 / 60)
+    notes = notes_known(case.space)
+    assert notes is not None
+    assert len(notes.contacts) == 2
+    assert (notes.contacts[:, 0].view(np.int64) != 0).all()
+    assert notes.contacts[:, 1].sum() > 0.0

@@ -72,6 +72,8 @@ _MORE = 1e-3
 _BACK = 2.0
 # Of the energy of a blow that is not damped, or of what moves after forces, taken by the joints when a structure turns.
 _TURNED = 0.25
+# After so long they need not: a pendulum's joints never take it, and what swings so slowly whole steps hardly damp [s].
+_LONG = 1.0
 #: Of the blow's energy, lost in a second [1/s].
 OVER = 0.05
 
@@ -161,7 +163,7 @@ def is_over(head):  # type: ignore[no-untyped-def]
         to_turn = settings[BLOW]
     elif settings[UNDAMPED] == AFTER_FORCES and t[at.FREE] == 0:
         to_turn = sum_of(head, LEDGER_KINETIC) - settings[BLOW_KINETIC]
-    turned = settings[BLOW_MOST] - settings[BLOW_LEAST] >= _TURNED * to_turn
+    turned = settings[BLOW_MOST] - settings[BLOW_LEAST] >= _TURNED * to_turn or settings[BLOW_AGE] >= _LONG
     back = turned and settings[BLOW_AGE] >= _BACK * settings[BLOW_MOST_AT]
     return back or settings[BLOW] < settings[BLOW_SHARE] * sum_of(head, LEDGER_ELASTIC)
 

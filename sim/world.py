@@ -33,7 +33,7 @@ _REST = 1e-12
 _MOST_STEPS = 1e9
 #: Longest step of a scene that something sets going at once [s]. Parts within a step (`sim.kernels.parts`) would do for
 #: the members, but measures see only what is at the end of one: peaks, forces in an impact, when joints break.
-LONGEST_PART = 1e-4
+SUDDEN_STEP = 1e-4
 
 
 class World:
@@ -98,7 +98,7 @@ class World:
         space.collision_slop = run.collision_slop
         self.time, self.steps = 0.0, 0
         self.part, self._parts_left = self.dt, 0
-        self._fewest_parts = math.ceil(self.dt / LONGEST_PART - 1e-6) if is_sudden(scene) else 1
+        self._fewest_parts = math.ceil(self.dt / SUDDEN_STEP - 1e-6) if is_sudden(scene) else 1
         self._largest_travel = run.largest_travel
         self._ramp = float(run.gravity_ramp)
         add_grounds(scene, space)

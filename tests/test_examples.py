@@ -9,8 +9,9 @@ ROOT = Path(__file__).parent.parent
 EXAMPLES = {
     "01_capacity": (147.7, 0.05),  # kN m: W_pl = 628.4 cm³ (EN 10365 tables) times 235 MPa
     "02_reference": (29.375, 0.001),  # kN: b h² fy / 4 L
-    # rad: with the force and its moment kept for 1/60 s, as they are given, the second-order scheme finds 0.893 in steps of
-    # 1/15360 and of 1/60000 s; with the moment that the turning shelf leaves it at each, steps of 1/20000 s give 0.817
+    # rad: with the force and its moment kept for 1/60 s, as they are given, the second-order scheme finds 0.892 in
+    # steps of 1/15360 s and 0.893 of 1/60000 s; with the moment that the turning shelf leaves it at each of them,
+    # steps of 1/20000 s give 0.817
     "03_joints_in_a_space": (-0.889, 0.0089),
     "04_calibrate": (0.68, 0.01),  # % of the peak load
     "05_car_on_ramp": (16.3, 0.1),  # %: the original's own code at the same step

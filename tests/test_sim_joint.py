@@ -128,18 +128,25 @@ def test_an_elastic_joint_says_what_it_bears_and_that_nothing_yields(damping: fl
 
 
 @pytest.mark.parametrize(
-    ("name", "limit"), [("rigid-plastic", "M"), ("elastic-plastic", "M"), ("interaction", "N-Q-M"), ("fibre", "fibres")]
+    ("name", "limits"),
+    [
+        ("rigid-plastic", {"M"}),
+        # Stopped at once by 78 kN, the bar rings on its shear stiffness up to nearly twice that: 145.5 kN are Q_max.
+        ("elastic-plastic", {"M", "Q+M"}),
+        ("interaction", {"N-Q-M"}),
+        ("fibre", {"fibres"}),
+    ],
 )
-def test_a_joint_that_yields_says_by_what(name: str, limit: str) -> None:
+def test_a_joint_that_yields_says_by_what(name: str, limits: set[str]) -> None:
     c = capacity(BAR, STEEL)
     space, joint = loaded(name, 0.0)
     joint.b.torque = 0.0
     joint.b.angular_velocity, joint.b.velocity = 30.0, (0.0, 15.0)
-    limits = set()
+    found = set()
     for _ in range(400):
         space.step(1.0 / 10000.0)
-        limits.add(joint.active_limit)
-    assert limits == {"", limit}
+        found.add(joint.active_limit)
+    assert found == {""} | limits
     elastic, total = np.array(joint.elastic_deformation), np.array(joint.deformation)
     arrays = JointArrays([joint])
     np.testing.assert_allclose(arrays.residual_deformation[0], total - elastic, atol=1e-12)

@@ -160,7 +160,8 @@ class Structure(Readings):
             return last
         chipmunk.stand_down(*self._control[[at.LEADER, at.OWN_CLASS, at.THEIR_POST_SOLVE]].tolist())
         self._control[at.LEADER] = 0
-        count = int(self._control[at.CONTACTS] - self._control[at.NEAR])
+        # Those that are near are not counted among them until the first solve.
+        count = int(self._control[at.CONTACTS])
         for place, touch in zip(self.tables[at.PLACES][:count], self.tables[at.TOUCHES][:count], strict=True):
             half, masses = touch[at.HALF : at.HALF + 2], touch[at.MASSES : at.MASSES + 2]
             chipmunk.hand_back(int(place[at.WHERE]), half, masses)

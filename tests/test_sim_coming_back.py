@@ -1,10 +1,12 @@
 """Joints that come, go and come back, and to bodies of any space: they hold, and the ledger has what they brought."""
 
+import numpy as np
 import pymunk
 import pytest
 from bodies import piece
 
-from sim import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, ElasticPlastic, Limits, energy
+from sim import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, ElasticPlastic, Limits, Structure, chipmunk, energy
+from sim.kernels import layout as at
 
 STRONG = ElasticPlastic((1e7, 1e7, 1e5), (1e6, 1e6, 1e5))
 WEAK = ElasticPlastic((1e7, 1e7, 1e5), (1e6, 1e6, 20.0))
@@ -170,3 +172,40 @@ def test_the_body_that_comes_first_in_a_structure_may_leave_while_others_touch()
     for _ in range(10):
         space.step(1 / 60)
     assert ball.position.y > -0.5
+
+
+def test_all_contacts_that_were_taken_over_go_back_to_chipmunk(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Balls bounce about on a bar to which joints are added in steps that are taken in parts."""
+    space = falling()
+    joints = row(space, law=WEAK)
+    for joint in joints:
+        space.add(pymunk.Poly.create_box(joint.b, (1.0, 0.1)))
+    for i in range(8):
+        ball = pymunk.Body(1.0, 0.1)
+        ball.position, ball.velocity = (0.5 * i, 0.3 + 0.3 * (i % 3)), (0.0, -5.0)
+        space.add(ball, pymunk.Circle(ball, 0.1))
+    hand_back, let_go = chipmunk.hand_back, Structure.let_go
+    handed: list[int] = []
+    seen: list[tuple[int, int, int]] = []
+
+    def count(where: int, half: np.ndarray, masses: np.ndarray) -> None:
+        handed.append(where)
+        hand_back(where, half, masses)
+
+    def watch(structure: Structure, now: int) -> np.ndarray:
+        before, control = len(handed), structure.tables.control
+        taken, near, begun = (int(control[word]) for word in (at.CONTACTS, at.NEAR, at.LEADER))
+        velocity = let_go(structure, now)
+        if begun:
+            seen.append((taken, near, len(handed) - before))
+        return velocity
+
+    monkeypatch.setattr(chipmunk, "hand_back", count)
+    monkeypatch.setattr(Structure, "let_go", watch)
+    for k in range(20):
+        twig = piece(space, 0.1, 0.1, 4.5, 0.2 * k)
+        space.add(DuctileJoint(joints[-1].b, twig, (4.0, 0.0), STRONG))
+        space.step(1 / 60)
+    assert all(back == taken for taken, _, back in seen)
+    assert any(taken > 0 for taken, _, _ in seen)
+    assert any(near > 0 for _, near, _ in seen)

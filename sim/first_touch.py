@@ -172,21 +172,18 @@ def _corners(shape: pymunk.Shape) -> list[pymunk.Vec2d]:
 class _Pair:
     """Corners of two shapes that may come to touch the other one: all of them while the shapes are apart.
 
-    A bar that stands on the ground on one end comes down on the other. Of shapes that overlap, those corners count that
-    are not in the other one, and will be within ``dt`` [s], but for ``slop`` [m].
+    A bar that stands on the ground on one end comes down on the other. Of shapes that ``meets`` says do overlap, those
+    corners count that are not in the other one, and will be within ``dt`` [s], but for ``slop`` [m].
     """
 
-    def __init__(self, own: _Way, other: _Way, dt: float, slop: float) -> None:
+    def __init__(self, own: _Way, other: _Way, meets: bool, dt: float, slop: float) -> None:
         self.own, self.other = own, other
-        apart = not overlap(own.shape, other.shape)
 
         def coming(way: _Way, onto: _Way) -> list[int]:
-            now, then = way.corners(0.0), way.corners(dt)
-            reach = way.radius + slop
+            corners = enumerate(zip(way.corners(0.0), way.corners(dt), strict=True))
+            deep = way.radius - slop
             return [
-                i
-                for i in range(len(now))
-                if apart or onto.distance(now[i], 0.0) - reach > -2.0 * slop > onto.distance(then[i], dt) - reach
+                i for i, (now, then) in corners if not meets or onto.distance(now, 0.0) > deep > onto.distance(then, dt)
             ]
 
         self._own = coming(own, other)
@@ -224,7 +221,7 @@ def _first_touch(own: _Way, other: _Way, dt: float, slop: float) -> Touch | None
     meets = overlap(own.shape, other.shape)
     if meets and b.body_type == pymunk.Body.DYNAMIC:
         return None
-    pair, time = _Pair(own, other, dt, slop), 0.0
+    pair, time = _Pair(own, other, meets, dt, slop), 0.0
     for _ in range(_MOST_ADVANCES):
         distance = pair.gap(time)
         if distance <= 0.01 * slop:

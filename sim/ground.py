@@ -53,10 +53,8 @@ def blocks(ground: Ground) -> list[list[Vector]]:
     directions = [_direction(a, b) for a, b in stretches]
     closed = points[0] == points[-1]
     # The ground goes on straight at both ends, for blocks not to come out of it there.
-    (x, y), (u, v) = stretches[0][0], directions[0]
-    beyond = [] if closed else [((x - _BEYOND * u, y - _BEYOND * v), (x, y))]
-    (x, y), (u, v) = stretches[-1][1], directions[-1]
-    beyond += [] if closed else [((x, y), (x + _BEYOND * u, y + _BEYOND * v))]
+    ends = [] if closed else [(points[0], directions[0], -_BEYOND), (points[-1], directions[-1], _BEYOND)]
+    beyond = [((x, y), (x + way * u, y + way * v)) for (x, y), (u, v), way in ends]
     found = []
     for i, (a, b) in enumerate(stretches):
         own = directions[i]

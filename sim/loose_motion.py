@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pymunk
 
-from sim import chipmunk
+from sim.chipmunk import steps_begun
 from sim.kernels import noted
 from sim.noted import notes_known
 
@@ -46,8 +46,7 @@ def motion_of(
     notes = notes_known(space)
     if notes is None or not n:
         return motion
-    stamp = chipmunk.words(chipmunk.address(space._space), chipmunk.SPACE_WORDS, np.int64)[chipmunk.SPACE_STAMP]
-    rows = notes.loose
+    stamp, rows = steps_begun(space), notes.loose
     rows = rows[(rows[:, noted.WORKED] == stamp) | (rows[:, noted.IN_PARTS] == stamp)]
     of = order[np.searchsorted(addresses, rows[:, 0].copy().view(np.int64), sorter=order)]
     worked, parts = rows[:, noted.WORKED] == stamp, rows[:, noted.IN_PARTS] == stamp

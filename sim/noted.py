@@ -8,11 +8,11 @@ import numpy as np
 import pymunk
 
 from sim import chipmunk
-from sim.chipmunk import ARBITERS_OF_SPACE, CONSTRAINTS_OF_SPACE, CONTROL, MOVING_BODIES
+from sim.chipmunk import ARBITERS_OF_SPACE, CONSTRAINT_CLASS, CONSTRAINTS_OF_SPACE, CONTROL, MOVING_BODIES
 from sim.joint import DuctileJoint
 from sim.kernels import noted as at
-from sim.kernels.ties import CONSTRAINT, PLACE, TIE_WORDS
-from sim.stock import kinds, own_numbers, starts_from_last
+from sim.kernels.ties import CONSTRAINT, KIND, PLACE, TIE_WORDS
+from sim.stock import KIND_CLASS, kinds, own_numbers, starts_from_last
 
 # Contacts that there is room for at first, and over those that there are.
 _ROOM, _SPARE = 16, 2
@@ -75,6 +75,7 @@ class Notes:
         ties = [(place, one) for place, one in enumerate(self._lists[1].tolist()) if one not in own_joints]
         self._ties = np.zeros((len(ties), TIE_WORDS), dtype=np.int64)
         self._ties[:, [PLACE, CONSTRAINT]] = np.array(ties, dtype=np.int64).reshape(-1, 2)
+        self._ties[:, KIND] = [self._kind_of(one) for _, one in ties]
         table[[at.TIES, at.TIES_COUNT]] = self._ties.ctypes.data, len(ties)
         arbiters = chipmunk.listed(space, ARBITERS_OF_SPACE).tolist()
         count = sum(len(chipmunk.contacts_of(arbiter)) for arbiter in arbiters)
@@ -88,6 +89,12 @@ class Notes:
             self._numbers.ctypes.data,
         )
         table[[at.CONTACTS, at.CONTACTS_ROOM]] = self._contacts.ctypes.data, len(self._contacts)
+
+    def _kind_of(self, constraint: int) -> int:
+        """Where the row of the kind of one of Chipmunk's own constraints is, or 0."""
+        functions = int(chipmunk.words(constraint, 1, np.int64)[CONSTRAINT_CLASS])
+        same = np.flatnonzero(self._kinds[:, KIND_CLASS] == functions)
+        return self._kinds.ctypes.data + int(same[0]) * self._kinds.strides[0] if len(same) else 0
 
     @property
     def numbers(self) -> list[np.ndarray]:

@@ -86,11 +86,7 @@ def touch(head):  # type: ignore[no-untyped-def]
     """Solve a group's contacts as it now stands; returns by how much their impulses changed, or `NOT_FINITE`."""
     places, touches = gather_contacts(head)
     count = len(places)
-    c = head
-    while c != 0:
-        t = views.control(c)
-        factorise_matrix(t, views.settings(t)[STEP] * reach_of(t))
-        c = t[at.NEXT]
+    factorise_group(head)
     g = operator(places, touches)
     v, change = np.empty(2 * count), np.zeros(2 * count)
     for r in range(2 * count):
@@ -109,6 +105,16 @@ def touch(head):  # type: ignore[no-untyped-def]
         views.control(head)[at.PUSHED_APART] = 1
         push_apart(head, places, touches, g, v, change)
     return largest
+
+
+@kernel
+def factorise_group(head):  # type: ignore[no-untyped-def]
+    """Factorise H of every structure of a group."""
+    c = head
+    while c != 0:
+        t = views.control(c)
+        factorise_matrix(t, views.settings(t)[STEP] * reach_of(t))
+        c = t[at.NEXT]
 
 
 @kernel

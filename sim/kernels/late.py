@@ -12,7 +12,7 @@ from sim.kernels.bodies import load_positions, move
 from sim.kernels.contacts import space_slop
 from sim.kernels.inertia import moment_of
 from sim.kernels.layout import GAP, INVERSE_M, LOOSE_START, MOVE, OTHER_START, STRIKE, WHOLE_STEP
-from sim.kernels.others import met, pushed, touched, which
+from sim.kernels.others import pushed, touched, which
 from sim.kernels.rows import own_velocity
 from sim.memory import floats, kernel
 
@@ -79,10 +79,10 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
         c = t[at.NEXT]
     for i in range(len(others)):
         b, share = floats(others[i], BODY_WORDS), 0.5 - gone
-        near = touched(head, others[i])
+        near = touched(head, others[i], 1)
         if near:
             share = behind_in(head, others[i]) - gone
-        if b[MASS_INVERSE] > 0.0 and (near or hit) and not met(head, others[i]):
+        if b[MASS_INVERSE] > 0.0 and (near or hit) and not touched(head, others[i], 0):
             b[VX] += share * pushes[i, 0]
             b[VX + 1] += share * pushes[i, 1]
 

@@ -85,10 +85,16 @@ def note(found, count, body):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def is_at(place, body):  # type: ignore[no-untyped-def]
+    """Whether a body is the loose one, or one of the two loose ones, of a contact."""
+    return (place[OWNER_A] == 0 and place[BODY_A] == body) or (place[OWNER_B] == 0 and place[BODY_B] == body)
+
+
+@kernel
 def which(others, place):  # type: ignore[no-untyped-def]
     """Where the loose body of a contact is among the others, or -1."""
     for i in range(len(others)):
-        if (place[OWNER_A] == 0 and place[BODY_A] == others[i]) or (place[OWNER_B] == 0 and place[BODY_B] == others[i]):
+        if is_at(place, others[i]):
             return i
     return -1
 
@@ -122,7 +128,7 @@ def release(head, others):  # type: ignore[no-untyped-def]
     h = views.settings(views.control(head))[STEP]
     for i in range(len(others)):
         b, space = floats(others[i], BODY_WORDS), integers(others[i], BODY_FULL_WORDS)[BODY_SPACE]
-        if b[MASS_INVERSE] > 0.0 and space != 0 and not touched(head, others[i]):
+        if b[MASS_INVERSE] > 0.0 and space != 0 and not touched(head, others[i], 1):
             # How fast those were that do not touch is not known; all of them fall.
             for axis in range(2):
                 pushes[i, axis] = h * floats(space, SPACE_WORDS)[SPACE_GRAVITY + axis]
@@ -149,38 +155,19 @@ def struck_besides(head, others, pushes):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def touched(head, body):  # type: ignore[no-untyped-def]
-    """Whether a group touches a body that is not its own, or is near it."""
+def touched(head, body, near):  # type: ignore[no-untyped-def]
+    """Whether Chipmunk has found that a group touches a body that is not its own, or it is ``near`` it, if that counts.
+
+    ``near`` is 1 or 0.
+    """
     c = head
     while c != 0:
         t = views.control(c)
-        if is_at(t, body, t[at.CONTACTS]):
-            return True
+        places = views.places(t)
+        for k in range(t[at.CONTACTS] - (1 - near) * t[at.NEAR]):
+            if is_at(places[k], body):
+                return True
         c = t[at.NEXT]
-    return False
-
-
-@kernel
-def met(head, body):  # type: ignore[no-untyped-def]
-    """Whether Chipmunk has found that a group touches a body that is not its own."""
-    c = head
-    while c != 0:
-        t = views.control(c)
-        if is_at(t, body, t[at.CONTACTS] - t[at.NEAR]):
-            return True
-        c = t[at.NEXT]
-    return False
-
-
-@kernel
-def is_at(t, body, count):  # type: ignore[no-untyped-def]
-    """Whether a loose body is at one of the first ``count`` contacts of a structure."""
-    places = views.places(t)
-    for k in range(count):
-        if (places[k, OWNER_A] == 0 and places[k, BODY_A] == body) or (
-            places[k, OWNER_B] == 0 and places[k, BODY_B] == body
-        ):
-            return True
     return False
 
 

@@ -27,13 +27,12 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
-from sim.kernels.blocks import factorise_matrix, solve
-from sim.kernels.complement import NOT_FINITE, transmit
+from sim.kernels.blocks import solve
+from sim.kernels.complement import NOT_FINITE, factorise_group, transmit
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import STEP
 from sim.kernels.noted import NOTES_WORDS, TIES_COUNT
 from sim.kernels.overlap import MOST_SWEEPS
-from sim.kernels.residual import reach_of
 from sim.kernels.ties import CONSTRAINT, INDEX, KIND, OWNER, body_of, is_of, ratio_of, slacken, tie_at, way_of
 from sim.memory import call_constraint, floats, integers, kernel
 from sim.stock import (
@@ -124,11 +123,7 @@ def ports_of(notes, which):  # type: ignore[no-untyped-def]
 @kernel
 def mobility(head, ports):  # type: ignore[no-untyped-def]
     """H⁻¹ of the group between these bodies, three rows and columns each."""
-    member = head
-    while member != 0:
-        t = views.control(member)
-        factorise_matrix(t, views.settings(t)[STEP] * reach_of(t))
-        member = t[at.NEXT]
+    factorise_group(head)
     c = np.zeros((3 * len(ports), 3 * len(ports)))
     for p in range(len(ports)):
         t = views.control(ports[p, 0])

@@ -41,9 +41,9 @@ from sim.stock import (
     POINT,
 )
 
-#: A tie's row: its address, its place in Chipmunk's list and the row of its kind; for each of its two bodies the
-#: control table of the structure that it belongs to (0: none) and its index there; velocities of both when it was
-#: solved last.
+#: A tie's row: its address, its place in Chipmunk's list and the row of its kind (0: none); for each of its two bodies
+#: the control table of the structure that it belongs to (0: none) and its index there; velocities of both when it
+#: was solved last.
 CONSTRAINT, PLACE, KIND, OWNER, INDEX, SEEN, TIE_WORDS = 0, 1, 2, 3, 5, 7, 13
 
 
@@ -77,7 +77,6 @@ def lift_springs(t, sign):  # type: ignore[no-untyped-def]
     for k in range(notes[TIES_COUNT]):
         tie = tie_at(notes, k)
         w = integers(tie[CONSTRAINT], CONSTRAINT_WORDS)
-        tie[KIND] = kind_of(t, tie[CONSTRAINT])
         for side in range(2):
             body = w[CONSTRAINT_BODY_A + side]
             i = find(t, body)
@@ -159,7 +158,6 @@ def bind(c, t):  # type: ignore[no-untyped-def]
     for k in range(notes[TIES_COUNT]):
         tie = tie_at(notes, k)
         w = integers(tie[CONSTRAINT], CONSTRAINT_WORDS)
-        tie[KIND] = kind_of(t, tie[CONSTRAINT])
         for side in range(2):
             tie[OWNER + side], tie[INDEX + side] = home(c, w[CONSTRAINT_BODY_A + side])
         one, other = tie[OWNER], tie[OWNER + 1]

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pymunk
+from numpy.typing import ArrayLike
 
+from capacity import InputError
 from scene import Scene
 from sim.borne_forces import forces_on
 from sim.joint import DuctileJoint
@@ -119,7 +121,7 @@ class Push:
 def push_over(
     scene: Scene,
     model: Model,
-    distances: np.ndarray,
+    distances: ArrayLike,
     watch: Callable[[float], None] = lambda share: None,
     *,
     second_order: float = 0.0,
@@ -148,16 +150,21 @@ def push_over(
 
     Raises
     ------
+    InputError
+        When ``scene`` has no push, or ``distances`` are no way from 0.
     SolverError
         When a step cannot be taken, too many find no solution, or the pushed node leaves its way.
     """
-    push = _push(scene, model, distances, watch, second_order, pace.duration)
+    way = np.asarray(distances, dtype=float)
+    if way.ndim != 1 or not np.isfinite(way).all() or not way.any() or way[0] != 0.0:
+        raise InputError("distances", "they are no way from 0", "give e.g. [0.0, 0.01, 0.02], in metres")
+    push = _push(scene, model, way, watch, second_order, pace.duration)
     longest = _LONGEST * PACE.duration
     if push.inertia > pace.most_inertia and pace.duration < longest:
         longer = min(longest, 1.1 * pace.duration * math.sqrt(push.inertia / pace.most_inertia))
         # Where joints all along a member bear Q_max, that may find no solution: then the first one stands, as it says.
         with suppress(SolverError):
-            push = _push(scene, model, distances, watch, second_order, longer)
+            push = _push(scene, model, way, watch, second_order, longer)
     return push
 
 

@@ -153,3 +153,9 @@ def test_a_simulated_push_goes_slowly_where_a_strut_gives_way() -> None:
 def test_joints_of_every_law_can_be_handed_over_as_json(law: str) -> None:
     table = joint_table(column("free", (1, 0), 0.01), Model("lobatto", 3, law))
     assert json.loads(json.dumps(table, allow_nan=False))["joints"] == table["joints"]
+
+
+@pytest.mark.parametrize("distances", [[], [0.0], [0.01, 0.02], [0.0, math.nan], [[0.0, 0.01]]])
+def test_distances_that_are_no_way_are_told(distances: list[Any]) -> None:
+    with pytest.raises(InputError, match="distances: they are no way from 0"):
+        sim.push_over(column("free", (1, 0), 0.01), Model("lobatto", 3, "elastic"), distances)

@@ -44,6 +44,8 @@ MOVING_BODIES, SLEEPING_ROOTS, CONSTRAINTS_OF_SPACE, ARBITERS_OF_SPACE = 12, 15,
 SPACE_SHAPES, SPACE_WORDS = 17, 21
 # Between them: how many steps there were, the length of the last one, and how many shapes.
 SPACE_STAMP, CURRENT_STEP, SPACE_SHAPE_COUNTER = 10, 11, 16
+# cpHastySpace, a space with threads: how many, and from how many constraints and contacts on all of them solve.
+THREADS, THREADED_FROM, THREADED_WORDS = 71, 73, 74
 # cpArray: how many, as half a word; where they are.
 LIST_COUNT, LIST_ITEMS, LIST_WORDS = 0, 1, 2
 
@@ -144,6 +146,12 @@ def _before_step(constraint: object, space: object) -> None:  # noqa: ARG001
 def steps_begun(space: pymunk.Space) -> int:
     """How many steps a space has begun."""
     return int(words(address(space._space), SPACE_WORDS, np.int64)[SPACE_STAMP])
+
+
+def solve_in_one_thread(space: pymunk.Space) -> None:
+    """Have no other thread at work while a structure is solved, whatever `Space.threads` says."""
+    if space.threaded:
+        words(address(space._space), THREADED_WORDS, np.int64)[THREADED_FROM] = np.iinfo(np.int64).max
 
 
 def release(constraint: object) -> None:

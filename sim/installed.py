@@ -34,7 +34,7 @@ def verify() -> None:
     IncompatiblePymunk
         When a field is not where it is expected; the message names the versions that work.
     """
-    parts = _body_fits, _pseudo_velocities_fit, _space_fits, _constraints_fit, _contacts_fit, _lists_fit
+    parts = _body_fits, _pseudo_velocities_fit, _space_fits, _threads_fit, _constraints_fit, _contacts_fit, _lists_fit
     check(all(fits() for fits in parts))
 
 
@@ -102,6 +102,13 @@ def _space_fits() -> bool:
     return bool(
         fits and words(body_address(body), at.BODY_FULL_WORDS, np.int64)[at.BODY_SPACE] == address(space._space)
     )
+
+
+def _threads_fit() -> bool:
+    """Whether a space with threads, where the platform has any, knows how many and from when on as it should."""
+    space = pymunk.Space(threaded=True)
+    fields = words(address(space._space), at.THREADED_WORDS, np.int64)
+    return not space.threaded or (fields[at.THREADS] == space.threads == 1 and fields[at.THREADED_FROM] == 50)
 
 
 def _constraints_fit() -> bool:

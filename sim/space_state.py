@@ -33,7 +33,7 @@ _looked_after: weakref.WeakSet[pymunk.Space] = weakref.WeakSet()
 
 
 def look_after(space: pymunk.Space) -> None:
-    """Have a space that gets ductile joints saved with its `SpaceState`, and awake when it goes.
+    """Have a space that gets ductile joints saved with its `SpaceState`, solved in one thread, and awake when it goes.
 
     Bodies and constraints that sleep while Python takes them and their space apart would call on memory that is gone.
     """
@@ -42,6 +42,7 @@ def look_after(space: pymunk.Space) -> None:
         copyreg.pickle(kind, _take_apart)
     if space not in _looked_after:
         _looked_after.add(space)
+        chipmunk.solve_in_one_thread(space)
         weakref.finalize(space, chipmunk.wake_all, space._space)
 
 

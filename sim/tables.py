@@ -63,10 +63,10 @@ class Tables:
         self._arrays: dict[int, np.ndarray] = {}
         #: The control table.
         self.control = np.zeros(at.CONTROL_WORDS, dtype=np.int64)
-        self._hold({word: np.zeros((n, 3)) for word in per_joint})
-        self._hold({word: np.zeros((len(bodies), 3)) for word in per_body})
         self._hold(
-            {
+            {word: np.zeros((n, 3)) for word in per_joint}
+            | {word: np.zeros((len(bodies), 3)) for word in per_body}
+            | {
                 at.BODY_AT: np.array([chipmunk.body_address(body) for body in bodies], dtype=np.int64),
                 at.JOINT_AT: np.array([chipmunk.address(j._constraint) for j in joints], dtype=np.int64),
                 at.JOINT_BODIES: ends,
@@ -104,6 +104,7 @@ class Tables:
         self.control[at.DAMPED] = int(self[at.DAMPING].any())
         self.control[at.BREAKABLE] = int(np.isfinite(self[at.LIMITS][:, :3]).any())
         self.control[at.HASH_LENGTH] = len(keys)
+        self.control[at.SHARED] = int(sorted(slot for slot in slots if slot >= 0) != list(range(below)))
         self.make_room(_ROOM)
 
     def __getitem__(self, word: int) -> np.ndarray:

@@ -24,7 +24,7 @@ def test_nothing_is_compiled_twice() -> None:
         "space.add(body, sim.DuctileJoint(space.static_body, body, (0.0, 0.0), law))\n"
         "space.step(0.01)\n"
         "laws = elastic_plastic.respond.compiled, elastic_plastic.commit.compiled\n"
-        "assert [own.cache_hits for own in (*compiled_callbacks().owners, *laws)] == [1] * 7\n"
+        "assert [own.cache_hits for own in (*compiled_callbacks().owners, *laws)] == [1] * 8\n"
         "assert 'compiled' not in vars(sim.laws.fibre.respond), 'a law that is not used'\n"
     )
     for _ in range(2):  # the first may have to fill the cache

@@ -20,7 +20,9 @@ def assemble(t, factor):  # type: ignore[no-untyped-def]
         mass = weight[i, INERTIA_M]
         diagonal[i, 0], diagonal[i, 1], diagonal[i, 2] = mass, 0.0, 0.0
         diagonal[i, 4], diagonal[i, 5], diagonal[i, 8] = mass, 0.0, weight[i, INERTIA_I]
-    clear(lower)
+    shared = t[at.SHARED] == 1
+    if shared:
+        clear(lower)
     for k in range(t[at.JOINTS]):
         ia, ib = joint_bodies[k, 0], joint_bodies[k, 1]
         d00, d01, d02 = response[k, TANGENT], response[k, TANGENT + 1], response[k, TANGENT + 2]
@@ -53,6 +55,9 @@ def assemble(t, factor):  # type: ignore[no-untyped-def]
             diagonal[ib, 8] += u_b * b0 + v_b * b1 + turn * b2
         slot = joint_slot[k]
         if slot >= 0:
+            if not shared:
+                for i in range(9):
+                    lower[slot, i] = 0.0
             lower[slot, 0] -= xx
             lower[slot, 1] -= xy
             lower[slot, 3] -= xy

@@ -14,10 +14,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from sim.chipmunk import CLASS_BYTES, CONSTRAINT_CLASS, CONTROL, POST_SOLVE
+from sim.chipmunk import CLASS_BYTES, CONSTRAINT_CLASS, CONTROL, LIST_COUNT, POST_SOLVE
 from sim.compiling import Ahead, compiled
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.owners import list_of_constraints
 from sim.kernels.step import begin, finish, solve
 from sim.memory import call_post_solve, integers
 
@@ -42,13 +43,13 @@ def compiled_callbacks() -> Callbacks:
     impulse = get_impulse()
     # The smallest of them tells whether the others are in the cache, too.
     ahead = None if impulse.cache_hits else Ahead(f"from {__name__} import apply_impulse; apply_impulse()")
-    before, cached, after = pre_step(), apply_cached_impulse(), after_step()
+    before, cached, alone, after = pre_step(), apply_cached_impulse(), leave_out_idle(), after_step()
     if ahead is not None:
         ahead.wait()
     apply = apply_impulse()
-    tables = [before, cached, cached, impulse, before, cached, apply, impulse, after]
+    tables = [before, cached, cached, impulse, before, alone, apply, impulse, after]
     functions = np.array([function.address for function in tables], dtype=np.int64)
-    return Callbacks(functions, (before, cached, apply, impulse, after))
+    return Callbacks(functions, (before, cached, alone, apply, impulse, after))
 
 
 @cache
@@ -76,8 +77,10 @@ def pre_step(digest: str) -> Callable[..., None]:
         if c == 0:
             return  # it has no structure: Python could not make one, and will say so
         t = views.control(c)
-        if t[at.LEADER] == 0:
-            t[at.LEADER] = constraint
+        if t[at.LEADER] != 0:
+            t[at.CALLED] += 1
+        else:
+            t[at.LEADER], t[at.CALLED] = constraint, 1
             own, tables = integers(constraint, CONTROL), integers(t[at.OWN_CLASS], AFTER_STEP + 1)
             t[at.THEIR_POST_SOLVE] = own[POST_SOLVE] if own[POST_SOLVE] != tables[AFTER_STEP] else 0
             own[CONSTRAINT_CLASS], own[POST_SOLVE] = t[at.OWN_CLASS] + CLASS_BYTES, tables[AFTER_STEP]
@@ -94,6 +97,28 @@ def apply_cached_impulse(digest: str) -> Callable[..., None]:
         digest  # noqa: B018
 
     return apply_cached_impulse
+
+
+@_with_digest(_STEP)
+def leave_out_idle(digest: str) -> Callable[..., None]:
+    """Before the first iteration, of the joint that acts for all: Chipmunk is to call no other until the step ends.
+
+    Going through thousands of joints that have nothing to do would cost more than the solve. Where the list has any
+    constraint that is not of this structure, it stays as it is.
+    """
+
+    def leave_out_idle(constraint, ratio):  # type: ignore[no-untyped-def]
+        digest  # noqa: B018
+        c = integers(constraint, CONTROL + 1)[CONTROL]
+        if c == 0:
+            return
+        t, listed = views.control(c), list_of_constraints(constraint)
+        count = listed[LIST_COUNT] & 0xFFFFFFFF
+        if t[at.LEADER] == constraint and t[at.CALLED] == count:
+            t[at.LEFT_OUT] = count - 1
+            listed[LIST_COUNT] -= t[at.LEFT_OUT]
+
+    return leave_out_idle
 
 
 @_with_digest(_STEP)
@@ -141,7 +166,9 @@ def after_step(digest: str) -> Callable[..., None]:
         c = integers(constraint, CONTROL + 1)[CONTROL]
         if c != 0 and views.control(c)[at.LEADER] == constraint:
             t = views.control(c)
-            t[at.LEADER] = 0
+            # It comes first in the list, so Chipmunk goes on to the next one.
+            list_of_constraints(constraint)[LIST_COUNT] += t[at.LEFT_OUT]
+            t[at.LEADER], t[at.LEFT_OUT] = 0, 0
             own = integers(constraint, CONTROL)
             own[CONSTRAINT_CLASS], own[POST_SOLVE] = t[at.OWN_CLASS], t[at.THEIR_POST_SOLVE]
             finish(c)

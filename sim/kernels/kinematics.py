@@ -38,7 +38,7 @@ from sim.kernels.layout import (
     V_A,
     V_B,
 )
-from sim.kernels.owners import constraints_of
+from sim.kernels.owners import constraints_with
 from sim.memory import call_notice, floats, inlined, integers, kernel
 
 _EPSILON = 2.0**-52
@@ -51,7 +51,7 @@ def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
     impulse, scale = views.per_joint(t, at.IMPULSE), views.scale(t)
     moving, held, holding = t[at.MOVING], False, 0
     # Mostly they come in Chipmunk's list as they do here; that is nearer at hand than each joint's own word for it.
-    listed = constraints_of(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE])
+    listed = constraints_with(t[at.LEADER])
     for k in range(t[at.JOINTS]):
         there = k < len(listed) and listed[k] == joint_at[k]
         if active[k] != 0 and not there and integers(joint_at[k], CONSTRAINT_WORDS)[CONSTRAINT_SPACE] == 0:
@@ -61,8 +61,10 @@ def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
             active[k], t[at.LEFT] = 0, 1
         holding += 1 if active[k] != 0 else 0
         held = held or (active[k] != 0 and (joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving))
-        for i in range(3):
-            impulse[k, i] *= ratio if active[k] != 0 else 0.0
+        share = ratio if active[k] != 0 else 0.0
+        if share != 1.0:
+            for i in range(3):
+                impulse[k, i] *= share
         if t[at.BREAKABLE] == 1:
             scale[k] = 1.0
     t[at.FREE], t[at.HOLDING] = 0 if held else 1, holding

@@ -50,9 +50,13 @@ NOTES = 39
 THEIR_POST_SOLVE = 40
 # Whether joints have left the space since the last step.
 LEFT = 41
+# Whether any lower block of the matrix is not one joint's alone: another's too, or filled in.
+SHARED = 42
+# Joints that Chipmunk has come to in this step; how many of them are not in its list while it solves, see `callbacks`.
+CALLED, LEFT_OUT = 43, 44
 # In `ACTIVE`: the joint holds, and what it stores is not known yet, see `strained`.
 UNKNOWN = 2
-_FIRST_ADDRESS = 42
+_FIRST_ADDRESS = 45
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

@@ -153,7 +153,7 @@ def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
 def iterate(t, predicting):  # type: ignore[no-untyped-def]
     """Newton's method from the present velocities; returns steps taken, whether it converged, and the residual.
 
-    The first solve of a step is ``predicting``.
+    The first solve of a step is ``predicting``. The residual is finite if impulses and velocities are.
     """
     settings = views.settings(t)
     factor, tolerance, rounding = settings[STEP] * reach_of(t), settings[at.TOLERANCE], settings[at.ROUNDING]
@@ -188,8 +188,10 @@ def iterate(t, predicting):  # type: ignore[no-untyped-def]
             begun, best = steps, error
     if settings[at.SOFT] != 1.0:
         error, size, spring = resist(t, 1.0)
+    if steps > (1 if predicting else 0):
+        motion = motion_scale(t)
     total = size + motion + rounding / tolerance
-    return steps, converged, math.sqrt(error / total) if total > 0.0 else 0.0
+    return steps, converged, math.sqrt(error / total) if 0.0 < total < math.inf else total
 
 
 @kernel

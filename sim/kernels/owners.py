@@ -9,6 +9,7 @@ from sim.chipmunk import (
     CONSTRAINT_CLASS,
     CONSTRAINT_NEXT_A,
     CONSTRAINT_NEXT_B,
+    CONSTRAINT_SPACE,
     CONSTRAINT_WORDS,
     CONSTRAINTS,
     CONSTRAINTS_OF_SPACE,
@@ -20,7 +21,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.memory import integers, kernel
+from sim.memory import inlined, integers, kernel
 
 
 @kernel
@@ -48,10 +49,17 @@ def owner_of(body, functions):  # type: ignore[no-untyped-def]
     return 0
 
 
+@inlined
+def list_of_constraints(constraint):  # type: ignore[no-untyped-def]
+    """Chipmunk's list of the constraints that it goes through in a step, by one of them."""
+    space = integers(constraint, CONSTRAINT_WORDS)[CONSTRAINT_SPACE]
+    return integers(integers(space, SPACE_WORDS)[CONSTRAINTS_OF_SPACE], LIST_WORDS)
+
+
 @kernel
-def constraints_of(space):  # type: ignore[no-untyped-def]
-    """Addresses of the constraints that Chipmunk goes through in a step of a space."""
-    listed = integers(integers(space, SPACE_WORDS)[CONSTRAINTS_OF_SPACE], LIST_WORDS)
+def constraints_with(constraint):  # type: ignore[no-untyped-def]
+    """Addresses of all constraints in that list."""
+    listed = list_of_constraints(constraint)
     return integers(listed[LIST_ITEMS], listed[LIST_COUNT] & 0xFFFFFFFF)
 
 

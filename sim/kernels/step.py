@@ -2,7 +2,6 @@
 
 import math
 
-from sim.chipmunk import CONSTRAINT_SPACE, CONSTRAINT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
@@ -18,7 +17,7 @@ from sim.kernels.near import drop, gather, let_come
 from sim.kernels.newton import restart
 from sim.kernels.noted import note_end, note_start
 from sim.kernels.others import even_out, note_pushes
-from sim.kernels.owners import constraints_of
+from sim.kernels.owners import constraints_with
 from sim.kernels.part import conclude
 from sim.kernels.parts import begin_whole, close_step, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
@@ -27,7 +26,7 @@ from sim.kernels.settle import book_cached, finite, settle_bounces
 from sim.kernels.strained import book_strained
 from sim.kernels.sudden import sudden_energy
 from sim.kernels.ties import bind, have_moved, lift_springs, note_seen
-from sim.memory import call_notice, inlined, integers, kernel
+from sim.memory import call_notice, inlined, kernel
 
 
 @kernel
@@ -91,7 +90,7 @@ def take_over(c, t):  # type: ignore[no-untyped-def]
 @inlined
 def has_all_constraints(t):  # type: ignore[no-untyped-def]
     """Whether the joints that hold are all constraints that Chipmunk goes through in this step."""
-    return len(constraints_of(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE])) == t[at.HOLDING]
+    return len(constraints_with(t[at.LEADER])) == t[at.HOLDING]
 
 
 @kernel
@@ -137,7 +136,9 @@ def solve(c):  # type: ignore[no-untyped-def]
     member = c
     while member != 0:
         t = views.control(member)
-        if t[at.FAULT] >= 0 or not finite(t):
+        # Contacts and ties have come after the residual was found.
+        known = not (touching or tied) and math.isfinite(views.settings(t)[at.LAST_RESIDUAL])
+        if t[at.FAULT] >= 0 or not (known or finite(t)):
             refuse(c)
             return
         member = t[at.NEXT]

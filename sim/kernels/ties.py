@@ -13,7 +13,6 @@ from sim.chipmunk import (
     BODY_WORDS,
     CONSTRAINT_BODY_A,
     CONSTRAINT_CLASS,
-    CONSTRAINT_SPACE,
     CONSTRAINT_WORDS,
     MASS_INVERSE,
     MOMENT_INVERSE,
@@ -24,7 +23,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
 from sim.kernels.noted import BOUND, KINDS, KINDS_COUNT, NOTES_WORDS, STAMP, TIES, TIES_COUNT
-from sim.kernels.owners import constraints_of, find, home, unite
+from sim.kernels.owners import constraints_with, find, home, unite
 from sim.memory import floats, integers, kernel
 from sim.stock import (
     KIND_ARMS,
@@ -100,7 +99,7 @@ def lift_springs(t, sign):  # type: ignore[no-untyped-def]
 @kernel
 def place_of(constraint):  # type: ignore[no-untyped-def]
     """Where a constraint is in Chipmunk's list."""
-    listed = constraints_of(integers(constraint, CONSTRAINT_WORDS)[CONSTRAINT_SPACE])
+    listed = constraints_with(constraint)
     for k in range(len(listed)):
         if listed[k] == constraint:
             return k

@@ -49,25 +49,10 @@ def _carried(motion: np.ndarray, arm: pymunk.Vec2d) -> np.ndarray:
 def led_aside(tables: Tables) -> np.ndarray:
     """By how much the last step leads bodies past where their velocities do, if it was taken in parts, (bodies, 3)."""
     aside = np.zeros_like(tables[at.LAST_POSITION])
-    in_parts = tables.control[at.AFTER_PARTS] if tables.control[at.LEADER] else tables.control[at.PARTS] > 1
-    if in_parts:
+    if tables.control[at.PARTS] > 1:
         moving = slice(int(tables.control[at.MOVING]))
         aside[moving] = tables[at.LAST_POSITION][moving] - tables[at.BEGUN_AT][moving]
     return aside
-
-
-def put_forth(bodies: Sequence[pymunk.Body], tables: Tables) -> None:
-    """In a step that has begun, put bodies to where their velocities have led them; see `sim.kernels.bodies.arrive`.
-
-    Impulses since the last step are not known any more then.
-    """
-    step, given = float(tables[at.SETTINGS][at.STEP]), tables[at.START_VELOCITY] - tables[at.LAST_VELOCITY]
-    for i, body in enumerate(bodies):
-        if body.body_type == pymunk.Body.DYNAMIC and given[i].any():
-            x, y, turn = (step * given[i]).tolist()
-            body.position += pymunk.Vec2d(x, y)
-            body.angle += turn
-            tables[at.LAST_FORCE][i] -= np.array([body.mass, body.mass, body.moment]) * given[i] / step
 
 
 def put_even(bodies: Sequence[pymunk.Body], tables: Tables) -> float:

@@ -123,11 +123,6 @@ def assign(constraint: object, control: np.ndarray, index: int) -> None:
     words(address(constraint), CONTROL + 2, np.int64)[CONTROL:] = control.ctypes.data, index
 
 
-def stand_down(location: int, functions: int, post_solve: int) -> None:
-    """Have the constraint at an address act for itself alone, with the functions at these addresses."""
-    words(location, CONTROL, np.int64)[[CONSTRAINT_CLASS, POST_SOLVE]] = functions, post_solve
-
-
 def call_before_step(constraint: object) -> None:
     """Have a constraint's `pre_solve` called with the space that what moves of it is in, or None.
 
@@ -159,12 +154,17 @@ def release(constraint: object) -> None:
     words(address(constraint), CONTROL + 1, np.int64)[CONTROL] = 0
 
 
-def hand_back(contact: int, half: np.ndarray, masses: np.ndarray) -> None:
-    """Have Chipmunk, or the next structure that looks, solve the contact at an address, as `collect` found it."""
-    own = words(contact, CONTACT_WORDS)
-    own[CONTACT_R1 : CONTACT_R1 + 2] -= half
-    own[CONTACT_R2 : CONTACT_R2 + 2] += half
-    own[[CONTACT_NORMAL_MASS, CONTACT_TANGENT_MASS]] = masses
+def place_of(body: pymunk.Body) -> np.ndarray:
+    """Where a body's centre of gravity is, and its angle, (3,) [m, m, rad]."""
+    place: np.ndarray = words(body_address(body), BODY_WORDS)[[X, Y, ANGLE]]
+    return place
+
+
+def place_before_step(body: pymunk.Body) -> np.ndarray:
+    """The same before the step that its space is in, if any, has moved it by its velocity."""
+    space = body.space
+    moved = space.current_time_step if space is not None and space._locked else 0.0
+    return place_of(body) - moved * words(body_address(body), BODY_WORDS)[[VX, VY, SPIN]]
 
 
 def next_move(body: pymunk.Body) -> tuple[pymunk.Vec2d, float]:

@@ -11,6 +11,9 @@ import pymunk
 class Energy:
     """The ledger of a structure [J]: ``external`` is the sum of all the others, to rounding.
 
+    It goes on where joints come and go: what was lost until then is shared by the structures that take over, as their
+    bodies are.
+
     How each is reckoned, and why, heads `sim.kernels.energy`; all belong to the middle of the bodies' next move, where
     their velocities belong. Ledgers of several structures add up with ``+``.
 
@@ -18,7 +21,8 @@ class Energy:
     ----------
     external : float
         Work done on the structure since it was built: by gravity and other forces, impulses, loads, bodies that are
-        moved, other bodies at contacts; with the kinetic and elastic energy it had when it was built.
+        moved, other bodies at contacts; with the kinetic and elastic energy it had when it was built. What comes to it
+        later brings its own, and what leaves it takes its own along.
     kinetic : float
         Of its bodies, at present: Σ ½ m v² + ½ I ω².
     elastic : float
@@ -56,7 +60,7 @@ class Energy:
 
 
 def energy(space: pymunk.Space) -> Energy:
-    """Ledger of all structures in ``space``; loose bodies have none, and a structure that fell apart is forgotten."""
+    """Ledger of all structures in ``space``; loose bodies have none, and take their share along when they come off."""
     from sim.joint import DuctileJoint
 
     joints = (joint for joint in space.constraints if isinstance(joint, DuctileJoint))

@@ -43,11 +43,10 @@ def succeed(
 ) -> Structure:
     """A structure of ``joints`` that goes on where ``old`` ended.
 
-    Its ledger begins with the energy that passes on, and with the ``work`` [J] done on the pieces as they were put to
-    their new places. What does not arrive is numerical.
+    Its ledger goes on, with the ``work`` [J] done on the pieces as they were put to their new places. What does not
+    arrive is numerical.
     """
-    regroup = any(joint.pre_solve is not None for joint in joints if joint not in heirs)
-    passed_on = old.energy.kinetic + old.energy.elastic
+    passed_on = old.energy
     new = Structure([joint for joint in joints if not joint.broken], old.tolerance, old)
     tables, before = new.tables, old.tables
     for joint, heir in heirs.items():
@@ -56,6 +55,9 @@ def succeed(
             tables[at.RESULT][joint.index], tables[at.ACTIVE][joint.index] = heir.result, 1
             # Where the next step is to find it, or the average-acceleration rule is not used; see `resolved`.
             tables[at.DEFORMATION][joint.index] = heir.result[:3]
+    # Pieces were put to where velocities alone lead on.
+    tables[at.LAST_POSITION][:] = np.nan
+    tables.control[[at.PARTS, at.SHIFTED]] = 1, 0
     tables[at.SETTINGS][:] = before[at.SETTINGS]
     tables[at.SETTINGS][[at.STEP, at.NEXT_MOVE]] = before[at.SETTINGS][at.WHOLE_STEP]
     for count in (at.NEWTON_STEPS, at.UNCONVERGED):
@@ -64,9 +66,7 @@ def succeed(
     tables[at.LAST_FORCE][[body not in old.bodies for body in new.bodies]] = np.nan
     ledger = tables[at.LEDGER]
     ledger[at.LEDGER_ELASTIC] = 0.5 * tables[at.RESULT][:, [at.RESULT_BEFORE, at.RESULT_ELASTIC]].sum()
-    ledger[at.LEDGER_TO_COME] = before[at.LEDGER][at.LEDGER_TO_COME]
-    ledger[at.LEDGER_EXTERNAL] = passed_on + work
-    ledger[at.LEDGER_NUMERICAL] = passed_on + work - ledger[at.LEDGER_KINETIC] - ledger[at.LEDGER_ELASTIC]
-    if regroup:  # one of them broke, and the others may have come apart
-        new.joints[0].ask_for_structure()
+    ledger[at.LEDGER_EXTERNAL] = passed_on.external + work
+    present = passed_on.kinetic + passed_on.elastic - ledger[at.LEDGER_KINETIC] - ledger[at.LEDGER_ELASTIC]
+    ledger[at.LEDGER_NUMERICAL] += work + present
     return new

@@ -33,7 +33,7 @@ class Notes:
 
     def __init__(self) -> None:
         self.table = np.zeros(at.NOTES_WORDS, dtype=np.int64)
-        self.table[[at.STAMP, at.ENDED, at.BOUND]] = -1
+        self.table[[at.STAMP, at.ENDED, at.LOOKED, at.BOUND]] = -1
         self._kinds, self._ties = kinds(), np.zeros((0, TIE_WORDS), np.int64)
         self.table[[at.KINDS, at.KINDS_COUNT]] = self._kinds.ctypes.data, len(self._kinds)
         self.loose = np.zeros((0, at.LOOSE_WORDS))
@@ -46,8 +46,9 @@ class Notes:
         self._lists: list[np.ndarray] = []
 
     def look(self, space: pymunk.Space) -> None:
-        """Look through ``space``, in a step that has begun; what another structure has noted of it stays."""
+        """Look through ``space``, in a step that has begun; what was noted of bodies in the last one stays."""
         table, known = self.table, {int(row[0].view(np.int64)): row for row in self.loose}
+        table[at.LOOKED] = chipmunk.steps_begun(space)
         self._lists = [chipmunk.listed(space, which).copy() for which in (MOVING_BODIES, CONSTRAINTS_OF_SPACE)]
         table[at.LISTS : at.LISTS + 2] = [one.ctypes.data for one in self._lists]
         table[at.LENGTHS : at.LENGTHS + 2] = [len(one) for one in self._lists]
@@ -90,6 +91,10 @@ class Notes:
         )
         table[[at.CONTACTS, at.CONTACTS_ROOM]] = self._contacts.ctypes.data, len(self._contacts)
 
+    def outdate(self) -> None:
+        """Have the space looked through in the next step, whatever it has then."""
+        self.table[at.LENGTHS] = -1
+
     def _kind_of(self, constraint: int) -> int:
         """Where the row of the kind of one of Chipmunk's own constraints is, or 0."""
         functions = int(chipmunk.words(constraint, 1, np.int64)[CONSTRAINT_CLASS])
@@ -116,7 +121,5 @@ def notes_known(space: pymunk.Space) -> Notes | None:
 
 
 def notes_of(space: pymunk.Space) -> Notes:
-    """Those of ``space``, brought up to date."""
-    notes = _of_spaces.setdefault(space, Notes())
-    notes.look(space)
-    return notes
+    """Those of ``space``, as they are; new ones know nothing of it yet."""
+    return _of_spaces.setdefault(space, Notes())

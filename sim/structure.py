@@ -10,25 +10,22 @@ import pymunk
 
 from capacity import InputError
 from sim import chipmunk
-from sim.body_places import carry_along, put_forth
 from sim.far_side import turn_round
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
 from sim.laws import Law
-from sim.leaving import set_free, take_out_broken, those_gone
+from sim.leaving import take_out_broken
 from sim.near import Surroundings
-from sim.noted import Notes, notes_of
+from sim.noted import Notes, notes_known
 from sim.notices import listen
 from sim.ordering import minimum_degree
-from sim.predecessors import Predecessors, steps_begun
 from sim.readings import Readings
 from sim.refused_step import RefusedStep
 from sim.space_state import look_after
+from sim.succession import take_bodies, take_joints, take_ledger
 from sim.tables import Tables
 
 _TOLERANCE = 1e-9
-# A blow that lasts does so in the structures that break off.
-_OF_BLOW = [at.BLOW, at.BLOW_KINETIC, at.BLOW_LEAST, at.BLOW_MOST, at.BLOW_MOST_AT, at.BLOW_AGE, at.BLOW_SHARE]
 
 
 class Structure(Readings):
@@ -60,10 +57,10 @@ class Structure(Readings):
     tolerance: float
     #: Bodies of the structure: dynamic ones in order of elimination, then the others.
     bodies: tuple[pymunk.Body, ...]
-    #: Whether other structures have taken over its joints.
+    #: Whether it has ended, and others have taken over its joints.
     superseded = False
-    #: In which of its space's steps that was.
-    left_at = 0
+    #: How many of its bodies have not taken their share of its ledger to another.
+    to_pass_on: int
     # While it is restored: what was saved, and how many joints are back.
     _saved: dict[str, Any] | None = None
     _restored = 0
@@ -95,83 +92,31 @@ class Structure(Readings):
         self.bodies = tuple([moving[i] for i in pattern.order] + held)
         for space in {body.space for body in bodies if body.space is not None}:
             look_after(space)
+            notes = notes_known(space)
+            if notes is not None:
+                notes.outdate()
         self.tables = Tables(joints, self.bodies, pattern, tolerance)
         self._control = self.tables.control
         self._control[[at.NOTICE, at.KEY]] = listen(self)
         self._surroundings = Surroundings()
         self._refused = RefusedStep()
         self._settings, self._result = self.tables[at.SETTINGS], self.tables[at.RESULT]
+        self.to_pass_on = len(moving)
 
     def _take_over(self, after: Structure | None) -> None:
-        """Make the joints this structure's, with the plastic state they had in another.
-
-        Bodies that were in another structure keep moving as they do; what is joined to one, or to a kinematic body, has
-        moved along with that since the last step, whatever its velocity. A structure that is new and tied to the world
-        at most begins to move with its first step.
-        """
+        """Make the joints this structure's, to go on from where others have left them and their bodies."""
         olds = dict.fromkeys([after, *(joint.structure for joint in self.joints)])
-        before = Predecessors(filter(None, olds), steps_begun(self.bodies))
-        for old in before.structures:
-            lasting = self._settings[_OF_BLOW], old._settings[_OF_BLOW]
-            self._settings[_OF_BLOW] = max(lasting, key=lambda blow: float(blow[0]))
-        moved = before.velocity
-        for i, body in enumerate(self.bodies):
-            self.tables[at.LAST_FORCE][i] = before.force.get(body, 0.0)
-        last = self.tables[at.LAST_VELOCITY]
-        kinematic = [body for body in self.bodies if body.body_type == pymunk.Body.KINEMATIC and body not in moved]
-        moved |= {body: np.array([*body.velocity, body.angular_velocity]) for body in kinematic}
-        if moved:
-            if after is None:
-                carry_along(moved, before.aside, [(joint.a, joint.b) for joint in self.joints])
-            for i, body in enumerate(self.bodies):
-                last[i] = moved.get(body, (*body.velocity, body.angular_velocity))
-        for i, joint in enumerate(self.joints):
-            if joint.structure is not None:
-                own, k = joint.structure.tables, joint.index
-                self._result[i] = own[at.RESULT][k]
-                if own[at.ACTIVE][k] or joint.broken:  # or it was taken out, and comes back
-                    self.tables[at.ACTIVE][i] = own[at.ACTIVE][k]
-                self.tables[at.DEFORMATION][i] = own[at.DEFORMATION][k]
-                self.tables.state(i)[:] = own.state(k)
+        before = [old for old in olds if old is not None and not old.superseded]
+        take_joints(self, before)
+        take_bodies(self, before, after is None)
+        take_ledger(self, before, after is not None)
+        for i in range(len(self.joints)):
             self._adopt(i)
-        ledger = self.tables[at.LEDGER]
-        mass = np.array([(b.mass, b.mass, b.moment) for b in self.bodies if b.body_type == pymunk.Body.DYNAMIC])
-        moving = last[: len(mass)]
-        # A body that never turns has a moment without bound.
-        ledger[at.LEDGER_KINETIC] = 0.5 * np.sum(np.where(moving != 0.0, mass, 0.0) * moving**2)
-        ledger[at.LEDGER_ELASTIC] = 0.5 * self._result[:, [at.RESULT_BEFORE, at.RESULT_ELASTIC]].sum()
-        ledger[at.LEDGER_EXTERNAL] = ledger[at.LEDGER_KINETIC] + ledger[at.LEDGER_ELASTIC]
 
     def _adopt(self, index: int) -> None:
         joint = self.joints[index]
         joint.join(self, index)
         chipmunk.assign(joint._constraint, self._control, index)
-
-    def let_go(self, now: int) -> np.ndarray:
-        """Velocities that the bodies were moved with, for a structure that takes over their joints in the step ``now``.
-
-        In a step that has begun, the contacts go back to Chipmunk, and bodies to where their velocities have led them;
-        what impulses since the last step did is not known yet.
-        """
-        self.superseded, self.left_at = True, now
-        set_free(self)
-        last = self.tables[at.LAST_VELOCITY]
-        if not self._control[at.LEADER]:
-            return last
-        chipmunk.stand_down(*self._control[[at.LEADER, at.OWN_CLASS, at.THEIR_POST_SOLVE]].tolist())
-        self._control[at.LEADER] = 0
-        # Those that are near are not counted among them until the first solve.
-        count = int(self._control[at.CONTACTS])
-        for place, touch in zip(self.tables[at.PLACES][:count], self.tables[at.TOUCHES][:count], strict=True):
-            half, masses = touch[at.HALF : at.HALF + 2], touch[at.MASSES : at.MASSES + 2]
-            chipmunk.hand_back(int(place[at.WHERE]), half, masses)
-        put_forth(self.bodies, self.tables)
-        return last
-
-    @property
-    def has_stepped(self) -> bool:
-        """Whether there was a step before the one that has begun, if one has."""
-        return bool(self._settings[at.BEFORE + at.STEP if self._control[at.LEADER] else at.STEP] > 0.0)
 
     def __getstate__(self) -> dict[str, Any]:
         """What is needed to go on from here: joints, and what they and their space (`SpaceState`) do not say."""
@@ -204,11 +149,20 @@ class Structure(Readings):
             if asks:
                 joint.ask_for_structure()
 
+    def is_of(self, joints: Sequence[DuctileJoint]) -> bool:
+        """Whether these are its joints, all of which hold, and it knows what moves."""
+        return self.knows_what_moves and set(self.joints) == set(joints) and bool(self.active.all())
+
     @property
     def knows_what_moves(self) -> bool:
         """Whether the bodies that were dynamic when the structure was built still are, and no others."""
         moving = int(self._control[at.MOVING])
         return all((b.body_type == pymunk.Body.DYNAMIC) == (i < moving) for i, b in enumerate(self.bodies))
+
+    def know(self, notes: Notes) -> None:
+        """Use what is noted of the space in a step."""
+        self._notes = notes
+        self._control[at.NOTES] = notes.table.ctypes.data
 
     def change_law(self, joint: int, law: Law) -> None:
         """Give a joint new numbers for the law it has; its plastic state stays.
@@ -280,12 +234,11 @@ class Structure(Readings):
             self._surroundings.answer(self)
             return
         if not self._control[at.NOTES]:
-            self._notes = notes_of(next(body.space for body in self.bodies if body.space is not None))
-            self._control[at.NOTES] = self._notes.table.ctypes.data
-            return
-        if self._control[at.LEFT]:
-            self._control[at.LEFT] = 0
-            those_gone(self)
+            from sim.grouping import look_through
+
+            space = next((body.space for body in self.bodies if body.space is not None), None)
+            if space is not None:
+                self.know(look_through(space))
             return
         fault = int(self._control[at.FAULT])
         if fault >= 0:

@@ -55,7 +55,7 @@ class Tables:
         limits = [(j.limits.elongation, j.limits.slip, j.limits.rotation, j.limits.compression_counts) for j in joints]
         settings = np.zeros(at.SETTINGS_WORDS)
         settings[[at.BETA, at.DELTA]] = settings[[at.WANTED_BETA, at.WANTED_DELTA]] = joints[0].scheme
-        settings[at.TOLERANCE], settings[at.SOFT] = tolerance**2, 1.0
+        settings[at.TOLERANCE], settings[at.SOFT], settings[at.MOMENT] = tolerance**2, 1.0, np.nan
         keys, values = hash_table([chipmunk.body_address(body) for body in bodies])
         per_joint = (at.DEFORMATION, at.LIGHTNESS, at.IMPULSE, at.RESIDUAL, at.SLOPE)
         velocities = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION, at.BEGUN_AT)
@@ -99,7 +99,7 @@ class Tables:
         # Where the bodies were before is not known.
         self[at.LAST_POSITION][:] = np.nan
         self.control[[at.BODIES, at.MOVING, at.JOINTS, at.LOWER]] = len(bodies), moving, n, below
-        self.control[at.FAULT] = -1
+        self.control[at.FAULT], self.control[at.NEW] = -1, 1
         self.control[at.OWN_CLASS] = compiled_callbacks().functions.ctypes.data
         self.control[at.DAMPED] = int(self[at.DAMPING].any())
         self.control[at.BREAKABLE] = int(np.isfinite(self[at.LIMITS][:, :3]).any())
@@ -125,6 +125,17 @@ class Tables:
                 array[: len(self[word])] = self[word][:contacts]
         self._hold(arrays)
         self.control[at.ROOM] = contacts
+
+    def copy_joint(self, other: Tables, own: int, its: int) -> None:
+        """All of joint ``its`` of another structure but its law's state, for joint ``own``."""
+        for word in _OF_JOINTS:
+            self[word][own] = other[word][its]
+
+    def copy_bodies(self, other: Tables, pairs: Sequence[tuple[int, int]]) -> None:
+        """Of bodies, by their own index and that in another structure: how and where the last step left them."""
+        own, its = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+        for word in _OF_BODIES:
+            self[word][own] = other[word][its]
 
     def make_pattern(self) -> None:
         """Memory for a load pattern, and let it act."""

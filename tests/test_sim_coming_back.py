@@ -1,11 +1,14 @@
 """Joints that come, go and come back, and to bodies of any space: they hold, and the ledger has what they brought."""
 
+import itertools
+from typing import Any
+
 import numpy as np
 import pymunk
 import pytest
 from bodies import piece
 
-from sim import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, ElasticPlastic, Limits, Structure, chipmunk, energy
+from sim import AVERAGE_ACCELERATION, IMPLICIT_EULER, DuctileJoint, ElasticPlastic, Energy, Limits, Structure, energy
 from sim.kernels import layout as at
 
 STRONG = ElasticPlastic((1e7, 1e7, 1e5), (1e6, 1e6, 1e5))
@@ -174,38 +177,100 @@ def test_the_body_that_comes_first_in_a_structure_may_leave_while_others_touch()
     assert ball.position.y > -0.5
 
 
-def test_all_contacts_that_were_taken_over_go_back_to_chipmunk(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Balls bounce about on a bar to which joints are added in steps that are taken in parts."""
+def test_joints_are_grouped_before_any_structure_begins_a_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two bars in mid-blow that touch, one of which grows: nothing is solved with a structure that has ended."""
     space = falling()
     joints = row(space, law=WEAK)
-    for joint in joints:
+    others = row(space, law=WEAK)
+    for i, joint in enumerate([*joints, *others]):
         space.add(pymunk.Poly.create_box(joint.b, (1.0, 0.1)))
+        joint.b.position += (0.0, 0.1 * (i // 4))
     for i in range(8):
         ball = pymunk.Body(1.0, 0.1)
-        ball.position, ball.velocity = (0.5 * i, 0.3 + 0.3 * (i % 3)), (0.0, -5.0)
+        ball.position, ball.velocity = (0.5 * i, 0.4 + 0.3 * (i % 3)), (0.0, -5.0)
         space.add(ball, pymunk.Circle(ball, 0.1))
-    hand_back, let_go = chipmunk.hand_back, Structure.let_go
-    handed: list[int] = []
-    seen: list[tuple[int, int, int]] = []
+    begun: list[bool] = []
+    build = Structure._build
 
-    def count(where: int, half: np.ndarray, masses: np.ndarray) -> None:
-        handed.append(where)
-        hand_back(where, half, masses)
+    def watch(structure: Structure, *arguments: Any) -> None:
+        alive = {joint.structure for joint in [*joints, *others] if joint.structure is not None}
+        begun.append(any(own.tables.control[at.LEADER] for own in alive))
+        build(structure, *arguments)
 
-    def watch(structure: Structure, now: int) -> np.ndarray:
-        before, control = len(handed), structure.tables.control
-        taken, near, begun = (int(control[word]) for word in (at.CONTACTS, at.NEAR, at.LEADER))
-        velocity = let_go(structure, now)
-        if begun:
-            seen.append((taken, near, len(handed) - before))
-        return velocity
-
-    monkeypatch.setattr(chipmunk, "hand_back", count)
-    monkeypatch.setattr(Structure, "let_go", watch)
+    monkeypatch.setattr(Structure, "_build", watch)
+    in_parts = 0
     for k in range(20):
         twig = piece(space, 0.1, 0.1, 4.5, 0.2 * k)
         space.add(DuctileJoint(joints[-1].b, twig, (4.0, 0.0), STRONG))
         space.step(1 / 60)
-    assert all(back == taken for taken, _, back in seen)
-    assert any(taken > 0 for taken, _, _ in seen)
-    assert any(near > 0 for _, near, _ in seen)
+        assert joints[0].structure is not None
+        in_parts += joints[0].structure.tables.control[at.PARTS] > 1
+    assert len(begun) > 20
+    assert not any(begun)
+    assert in_parts > 5
+
+
+def test_a_structure_that_grows_goes_on_as_it_was() -> None:
+    """A twig without weight changes neither the motion after a blow, in parts, nor the ledger."""
+
+    def live(twigs: bool) -> tuple[np.ndarray, Energy]:
+        space = falling()
+        joints = row(space, law=WEAK)
+        ball = piece(space, 20.0, 1.0, 3.5, 0.2)
+        ball.velocity = (0.0, -5.0)
+        space.add(pymunk.Circle(ball, 0.1), *(pymunk.Poly.create_box(joint.b, (1.0, 0.1)) for joint in joints))
+        for k in range(60):
+            if twigs and k % 7 == 3:
+                end = joints[-1].b
+                twig = piece(space, 1e-9, 1e-9, *end.local_to_world((0.5, 0.0)))
+                space.add(DuctileJoint(end, twig, twig.position, ElasticPlastic((1.0, 1.0, 1.0), (1e6,) * 3)))
+            space.step(1 / 60)
+        return np.array([[*joint.b.position, joint.b.angle] for joint in joints]), energy(space)
+
+    (alone, ledger), (grown, same) = live(twigs=False), live(twigs=True)
+    assert ledger.plastic > 50.0
+    np.testing.assert_allclose(grown, alone, atol=1e-5)
+    for name in ("external", "plastic", "contact", "numerical"):
+        assert getattr(same, name) == pytest.approx(getattr(ledger, name), rel=1e-4, abs=1e-3), name
+
+
+def test_the_ledger_goes_on_in_what_breaks_off() -> None:
+    """Halves of a bar that is torn share what was lost before, each as it has of its bodies."""
+    space = pymunk.Space()
+    bodies = [piece(space, 1.0, 1 / 12, i + 0.5, 0.0) for i in range(5)]
+    joints = [DuctileJoint(a, b, (i + 1.0, 0.0), WEAK) for i, (a, b) in enumerate(itertools.pairwise(bodies))]
+    space.add(*joints)
+    bodies[0].apply_impulse_at_local_point((0.0, 50.0))
+    for _ in range(60):
+        space.step(1 / 60)
+    before = energy(space)
+    assert min(before.plastic, before.numerical) > 1.0
+    space.remove(joints[2])
+    space.step(1 / 60)
+    halves = [joints[0].structure, joints[3].structure]
+    assert halves[0] is not None
+    assert halves[1] is not None
+    assert halves[0].energy.plastic >= 0.6 * before.plastic
+    assert halves[1].energy.plastic >= 0.4 * before.plastic
+    after = energy(space)
+    assert after.plastic == pytest.approx(before.plastic, rel=0.05)
+    assert abs(after.gap) < 1e-12 * before.external
+
+
+def test_a_structure_that_was_all_taken_out_comes_back_where_it_is() -> None:
+    """It knows nothing of the way on which its bodies went without it; also where nothing else is in the space."""
+    space = falling()
+    joints = row(space)
+    space.step(1 / 60)
+    space.remove(*joints)
+    for _ in range(10):
+        space.step(1 / 60)
+    strained = joints[0].b.position.y
+    space.add(*joints)
+    space.step(1 / 60)
+    ledger = energy(space)
+    # By as much as the first joint yields, which is at 0.1 m.
+    assert strained < -0.1
+    assert ledger.external > 0.5 * 1e7 * 0.1**2
+    assert ledger.numerical >= 0.0
+    assert abs(ledger.gap) < 1e-12 * ledger.external

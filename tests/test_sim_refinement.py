@@ -72,8 +72,9 @@ def test_mass_momentum_and_energy_are_kept(
     assert kept.max() <= 1e-13 * mass * max(1.0, 5.0 * speed)
     whole = energy.kinetic + energy.elastic
     assert now.kinetic == pytest.approx(sum(kinetic(body) for body in dynamic(assembly)), rel=1e-12)
-    assert now.kinetic + now.elastic + now.numerical == pytest.approx(whole, rel=1e-12)
-    assert abs(now.numerical) <= 1e-6 * whole
+    lost = now.numerical - energy.numerical
+    assert now.kinetic + now.elastic + lost == pytest.approx(whole, rel=1e-12)
+    assert abs(lost) <= 1e-6 * whole
     assert now.elastic != pytest.approx(energy.elastic, rel=1e-6)  # what one has more the other has less
 
 
@@ -187,7 +188,8 @@ def test_a_member_is_refined_while_a_blow_is_on(law: str) -> None:
     before, energy = totals(assembly), structure.energy
     assembly.refine(["beam"])
     assert totals(assembly) == pytest.approx(before, rel=1e-12, abs=1e-9)
-    assert abs(assembly.structure.energy.numerical) <= 0.01 * (energy.kinetic + energy.elastic)
+    lost = assembly.structure.energy.numerical - energy.numerical
+    assert abs(lost) <= 0.01 * (energy.kinetic + energy.elastic)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -217,9 +219,11 @@ def test_what_has_yielded_is_carried_over(joints: int, law: str) -> None:
             assert totals(assembly) == pytest.approx(before, rel=1e-12, abs=1e-9)
             assert structure.dissipated.sum() == pytest.approx(work, rel=1e-12)
             assert structure.plastic_deformation.sum(axis=0) == pytest.approx(plastic, rel=1e-12)
-            assert now.external == pytest.approx(now.kinetic + now.elastic + now.numerical, rel=1e-12)
+            assert abs(now.gap) <= 1e-12 * now.external
+            assert now.plastic == pytest.approx(used.plastic, rel=1e-12)
             locked = used.elastic if law == "fibre" else 0.0  # what fibres store against each other may be lost
-            assert abs(now.numerical) <= 0.01 * (used.kinetic + used.elastic) + locked + 1e-12
+            lost = now.numerical - used.numerical
+            assert abs(lost) <= 0.01 * (used.kinetic + used.elastic) + locked + 1e-12
         for _ in range(600):
             assembly.step(5e-3)
         residual.append(assembly.nodes["tip"].now())

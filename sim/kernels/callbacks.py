@@ -18,9 +18,10 @@ from sim.chipmunk import CLASS_BYTES, CONSTRAINT_CLASS, CONTROL, LIST_COUNT, POS
 from sim.compiling import Ahead, compiled
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.noted import is_known
 from sim.kernels.owners import list_of_constraints
 from sim.kernels.step import begin, finish, solve
-from sim.memory import call_post_solve, integers
+from sim.memory import call_notice, call_post_solve, integers
 
 #: Where the last of the functions is among the others.
 AFTER_STEP = 8
@@ -80,6 +81,14 @@ def pre_step(digest: str) -> Callable[..., None]:
         if t[at.LEADER] != 0:
             t[at.CALLED] += 1
         else:
+            if not is_known(t, constraint):
+                # Python looks through the space, and may give the joint to another structure.
+                t[at.NOTES] = 0
+                call_notice(t[at.NOTICE], t[at.KEY])
+                c = integers(constraint, CONTROL + 1)[CONTROL]
+                if c == 0:
+                    return
+                t = views.control(c)
             t[at.LEADER], t[at.CALLED] = constraint, 1
             own, tables = integers(constraint, CONTROL), integers(t[at.OWN_CLASS], AFTER_STEP + 1)
             t[at.THEIR_POST_SOLVE] = own[POST_SOLVE] if own[POST_SOLVE] != tables[AFTER_STEP] else 0

@@ -15,7 +15,7 @@ A joint that stands for a length ℓ of a member stands for an arc, and its kink
 
 import math
 
-from sim.chipmunk import ANGLE, BODY_WORDS, CONSTRAINT_SPACE, CONSTRAINT_WORDS, COSINE, SINE, X
+from sim.chipmunk import ANGLE, BODY_WORDS, COSINE, SINE, X
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import from_column
@@ -38,27 +38,18 @@ from sim.kernels.layout import (
     V_A,
     V_B,
 )
-from sim.kernels.owners import constraints_with
-from sim.memory import call_notice, floats, inlined, integers, kernel
+from sim.memory import floats, inlined, kernel
 
 _EPSILON = 2.0**-52
 
 
 @inlined
-def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
-    """Let go of joints that are no longer in the space; the others start from ``ratio`` times their last impulses."""
-    active, joint_at, joint_bodies = views.active(t), views.joint_at(t), views.joint_bodies(t)
+def take_up(t, ratio):  # type: ignore[no-untyped-def]
+    """Joints that hold start from ``ratio`` times their last impulses; whether any holds to what does not move."""
+    active, joint_bodies = views.active(t), views.joint_bodies(t)
     impulse, scale = views.per_joint(t, at.IMPULSE), views.scale(t)
     moving, held, holding = t[at.MOVING], False, 0
-    # Mostly they come in Chipmunk's list as they do here; that is nearer at hand than each joint's own word for it.
-    listed = constraints_with(t[at.LEADER])
     for k in range(t[at.JOINTS]):
-        there = k < len(listed) and listed[k] == joint_at[k]
-        if active[k] != 0 and not there and integers(joint_at[k], CONSTRAINT_WORDS)[CONSTRAINT_SPACE] == 0:
-            if last_step > 0.0:
-                let_go(t, k, last_step)
-                t[at.FORCED] = 1
-            active[k], t[at.LEFT] = 0, 1
         holding += 1 if active[k] != 0 else 0
         held = held or (active[k] != 0 and (joint_bodies[k, 0] >= moving or joint_bodies[k, 1] >= moving))
         share = ratio if active[k] != 0 else 0.0
@@ -68,9 +59,6 @@ def take_up(t, ratio, last_step):  # type: ignore[no-untyped-def]
         if t[at.BREAKABLE] == 1:
             scale[k] = 1.0
     t[at.FREE], t[at.HOLDING] = 0 if held else 1, holding
-    if t[at.LEFT] == 1:
-        # Python sees to it that they are taken up again should they come back.
-        call_notice(t[at.NOTICE], t[at.KEY])
 
 
 @kernel

@@ -48,15 +48,15 @@ GATHER, LOOK, DROP = 1, 2, 3
 NOTES = 39
 # What Chipmunk would call at the end of a step for the joint that acts for all; 0 for nothing.
 THEIR_POST_SOLVE = 40
-# Whether joints have left the space since the last step.
-LEFT = 41
+# In which of its space's steps a structure last took part; 0 before the first. Whether any joint is new to the kernels.
+SEEN, NEW = 41, 42
 # Whether any lower block of the matrix is not one joint's alone: another's too, or filled in.
-SHARED = 42
+SHARED = 43
 # Joints that Chipmunk has come to in this step; how many of them are not in its list while it solves, see `callbacks`.
-CALLED, LEFT_OUT = 43, 44
+CALLED, LEFT_OUT = 44, 45
 # In `ACTIVE`: the joint holds, and what it stores is not known yet, see `strained`.
 UNKNOWN = 2
-_FIRST_ADDRESS = 45
+_FIRST_ADDRESS = 46
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -141,7 +141,9 @@ UNEVEN = 29
 SOFT = 30
 # The most that outer forces had done in any step by the average-acceleration rule [J], see `guard`.
 LARGEST = 31
-_NUMBERS = 32
+# Angular momentum of a new structure's bodies before some are put to where others have taken them; no number otherwise.
+MOMENT = 32
+_NUMBERS = 33
 # All of them again, as they were before the step.
 BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 

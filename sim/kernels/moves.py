@@ -22,10 +22,10 @@ from sim.chipmunk import BODY_WORDS, X
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
-from sim.kernels.bodies import move
+from sim.kernels.bodies import move, store_velocities
 from sim.kernels.guard import relative_velocity, rigid_motion
-from sim.kernels.inertia import mass_of
-from sim.kernels.layout import BETA, MOVE, UNEVEN, WANTED_BETA
+from sim.kernels.inertia import mass_of, moment_of
+from sim.kernels.layout import BEFORE, BETA, MOMENT, MOVE, UNEVEN, WANTED_BETA
 from sim.memory import floats, inlined, kernel
 
 # Over the step: what is rounding.
@@ -73,38 +73,57 @@ def carry_on(t, time):  # type: ignore[no-untyped-def]
 
 @kernel
 def shift_all(t, way):  # type: ignore[no-untyped-def]
-    """Move the bodies by their ``way``, which becomes one that leaves the centre of what nothing holds where it is."""
-    body_at = views.body_at(t)
+    """Move the bodies by their ``way``, which becomes one that leaves the centre of what nothing holds where it is.
+
+    Its angular momentum stays, too, where bodies have been given other velocities than those they are moved by.
+    """
+    body_at, start, gained = views.body_at(t), views.per_body(t, at.START_VELOCITY), 0.0
     x, y, u, v, _ = rigid_motion(t, way)
     frame = x, y, u, v, 0.0
     for i in range(t[at.MOVING]):
         way[i, 0], way[i, 1], way[i, 2] = relative_velocity(body_at[i], way[i], frame)
         move(body_at[i], way[i, 0], way[i, 1], way[i, 2])
+        gained += mass_of(floats(body_at[i], BODY_WORDS)) * (way[i, 0] * start[i, 1] - way[i, 1] * start[i, 0])
+    if t[at.FREE] == 1 and gained != 0.0:
+        turn_all(t, -gained)
 
 
 @kernel
-def keep_moment(t, places):  # type: ignore[no-untyped-def]
-    """Have a free structure's bodies the same angular momentum at ``places`` as where they are, with their velocities.
-
-    Places are shifted for it, all alike so that their centre of mass is on the line along which it moves, and each
-    across its body's velocity u relative to that centre, by λ |u|, which leaves the centre where it is. With D how far
-    bodies are from their ``places``, λ = Σ m D×u / Σ m u²; by Cauchy's inequality the shifts are no more than D, in the
-    root of the mean square weighed by mass.
-    """
-    body_at, moving, velocity = views.body_at(t), t[at.MOVING], views.per_body(t, at.LAST_VELOCITY)
-    cx, cy, vx, vy, _ = rigid_motion(t, velocity)
-    missing, square, mass, x, y = 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(moving):
+def turn_all(t, moment):  # type: ignore[no-untyped-def]
+    """Give what nothing holds an angular momentum as a rigid body, by which no joint is deformed."""
+    body_at, start, velocity = views.body_at(t), views.per_body(t, at.START_VELOCITY), views.per_body(t, at.VELOCITY)
+    cx, cy, _, _, _ = rigid_motion(t, start)
+    inertia = 0.0
+    for i in range(t[at.MOVING]):
         b = floats(body_at[i], BODY_WORDS)
-        u, v, m = velocity[i, 0] - vx, velocity[i, 1] - vy, mass_of(b)
-        missing += m * ((b[X] - places[i, 0]) * v - (b[X + 1] - places[i, 1]) * u)
-        square += m * (u * u + v * v)
-        mass, x, y = mass + m, x + m * places[i, 0], y + m * places[i, 1]
-    share = missing / square if square > 0.0 else 0.0
-    x, y = way_to_line(x / mass, y / mass, cx, cy, vx, vy)
-    for i in range(moving):
-        places[i, 0] += x + share * (velocity[i, 1] - vy)
-        places[i, 1] += y - share * (velocity[i, 0] - vx)
+        x, y = b[X] - cx, b[X + 1] - cy
+        inertia += mass_of(b) * (x * x + y * y) + moment_of(b)
+    turn = moment / inertia
+    for i in range(t[at.MOVING]):
+        b = floats(body_at[i], BODY_WORDS)
+        x, y = b[X] - cx, b[X + 1] - cy
+        for of in (start, velocity):
+            of[i, 0] -= turn * y
+            of[i, 1] += turn * x
+            of[i, 2] += turn
+    store_velocities(t, start)
+
+
+@kernel
+def turn_back(t):  # type: ignore[no-untyped-def]
+    """Give a new structure that nothing holds the angular momentum that its bodies had, once.
+
+    What was joined to others in flight has been put to where they have taken it, which is not on the line of its own
+    velocity.
+    """
+    body_at, start, settings = views.body_at(t), views.per_body(t, at.START_VELOCITY), views.settings(t)
+    missing = settings[MOMENT]
+    settings[MOMENT], settings[BEFORE + MOMENT] = math.nan, math.nan
+    for i in range(t[at.MOVING]):
+        b = floats(body_at[i], BODY_WORDS)
+        missing -= mass_of(b) * (b[X] * start[i, 1] - b[X + 1] * start[i, 0]) + moment_of(b) * start[i, 2]
+    if t[at.FREE] == 1:
+        turn_all(t, missing)
 
 
 @kernel

@@ -39,18 +39,19 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels.inertia import mass_of, moment_of
-from sim.memory import call_notice, floats, inlined, integers, kernel
+from sim.memory import floats, inlined, integers, kernel
 
 #: Words of the table: the step that was noted, how many structures have begun it and not ended it, the step after which
-#: bodies were noted; bits of the lengths of this one and of the last; copies of the lists of moving bodies and of
-#: constraints, and how long they are; rows of loose bodies and how many; own constraints and how many, and room for
-#: their numbers; rows of contacts, how many there is room for, and how many were noted; all own constraints, how many,
-#: their kinds and how many (see `ties`), and the step in which they were given to structures.
-STAMP, UNDER_WAY, ENDED, THIS_STEP, LAST_STEP = range(5)
-LISTS, LENGTHS = 5, 7
-LOOSE, LOOSE_COUNT, STOCK, STOCK_COUNT, STOCK_NUMBERS, CONTACTS, CONTACTS_ROOM, CONTACTS_COUNT = range(9, 17)
-TIES, TIES_COUNT, KINDS, KINDS_COUNT, BOUND = range(17, 22)
-NOTES_WORDS = 22
+#: bodies were noted, the one in which Python looked through the space; bits of the lengths of this one and of the last;
+#: copies of the lists of moving bodies and of constraints, and how long they are; rows of loose bodies and how many;
+#: own constraints and how many, and room for their numbers; rows of contacts, how many there is room for, and how many
+#: were noted; all own constraints, how many, their kinds and how many (see `ties`), and the step in which they were
+#: given to structures.
+STAMP, UNDER_WAY, ENDED, LOOKED, THIS_STEP, LAST_STEP = range(6)
+LISTS, LENGTHS = 6, 8
+LOOSE, LOOSE_COUNT, STOCK, STOCK_COUNT, STOCK_NUMBERS, CONTACTS, CONTACTS_ROOM, CONTACTS_COUNT = range(10, 18)
+TIES, TIES_COUNT, KINDS, KINDS_COUNT, BOUND = range(18, 23)
+NOTES_WORDS = 23
 #: A loose body's row: its address; x, y, angle, the six words of its transform, and pseudo-velocities at the end of the
 #: last step; velocities and x, y, angle when this one has moved it.
 #: From there on: the last step in which structures did work on it, and that work [J]; the last step that it went
@@ -68,14 +69,11 @@ CONTACT_ROW = 5
 @inlined
 def note_start(t):  # type: ignore[no-untyped-def]
     """Note, once in a step, how the rest of the space begins it."""
+    if t[at.NOTES] == 0:
+        return  # none of its bodies is in a space any more
     space = integers(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE], SPACE_WORDS)
     notes = integers(t[at.NOTES], NOTES_WORDS)
-    if t[at.NOTES] == 0 or (notes[STAMP] != space[SPACE_STAMP] and is_outdated(notes, space)):
-        t[at.NOTES] = 0
-        call_notice(t[at.NOTICE], t[at.KEY])
-        if t[at.NOTES] == 0:
-            return  # none of its bodies is in a space any more
-        notes = integers(t[at.NOTES], NOTES_WORDS)
+    t[at.SEEN] = space[SPACE_STAMP]
     if notes[STAMP] == space[SPACE_STAMP]:
         notes[UNDER_WAY] += 1
         return
@@ -112,8 +110,24 @@ def note_contacts(notes, space):  # type: ignore[no-untyped-def]
 
 
 @inlined
+def is_known(t, constraint):  # type: ignore[no-untyped-def]
+    """Whether the space of a structure's constraint is as Python has found it, in the step that begins."""
+    if t[at.NOTES] == 0:
+        return False
+    space = integers(integers(constraint, CONSTRAINT_WORDS)[CONSTRAINT_SPACE], SPACE_WORDS)
+    notes = integers(t[at.NOTES], NOTES_WORDS)
+    now = space[SPACE_STAMP]
+    return notes[STAMP] == now or notes[LOOKED] == now or not is_outdated(notes, space)
+
+
+@inlined
 def is_outdated(notes, space):  # type: ignore[no-untyped-def]
-    """Whether the space has other bodies or constraints by now, or more contacts than there is room for."""
+    """Whether the space has other bodies or constraints by now, or more contacts than there is room for.
+
+    Or there was a step without any structure: what then left may be back.
+    """
+    if notes[ENDED] != space[SPACE_STAMP] - 1:
+        return True
     for i in range(2):
         head = integers(space[MOVING_BODIES if i == 0 else CONSTRAINTS_OF_SPACE], LIST_WORDS)
         count = head[LIST_COUNT] & 0xFFFFFFFF

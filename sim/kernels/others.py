@@ -201,7 +201,7 @@ def put_back(body, place, h, whole):  # type: ignore[no-untyped-def]
 
 @kernel
 def show(body, place, h, whole):  # type: ignore[no-untyped-def]
-    """Put a loose body back as `put_back` does, to where it has the same angular momentum as where it is.
+    """Put a body that nothing holds back as `put_back` does, to where it has the same angular momentum as where it is.
 
     That is on the line along which it moves, at the point nearest to its ``place``, which is changed.
     """

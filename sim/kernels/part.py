@@ -156,7 +156,7 @@ def end_part(head, others, before, pushes, move_on, step):  # type: ignore[no-un
                 start[i, axis] = last[i, axis]
         clear(views.per_body(t, at.CONTACT_IMPULSE))
         settings = views.settings(t)
-        take_up(t, ratio, settings[STEP])
+        take_up(t, ratio)
         averaged = settings[BETA] != 0.0
         settings[STEP_RATIO] = ratio if averaged else move_on / h
         settings[STEP], settings[NEXT_MOVE] = step, move_on

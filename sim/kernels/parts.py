@@ -6,7 +6,8 @@ and contacts are solved, laws and ledger take over what was found, and the struc
 the loose ones that touch them. The last part is what Chipmunk's iterations then work on. In the end the bodies are put
 back, and a pseudo-velocity makes Chipmunk's next move, which is one of a whole step, end where the last part does.
 
-Where nothing holds a structure, its bodies are put back so that their angular momentum is what it is (`moves.py`).
+Where nothing holds a structure, each of its bodies is put back to where its angular momentum is what it is, so that a
+part of them that is taken away has its own.
 
 Which surfaces meet, and in which direction, is found anew within the step (`near.py`). In between, their distance g is
 followed, and a contact may close it in a part of length h but not pass it, v_n ≥ - g / h.
@@ -55,7 +56,7 @@ from sim.kernels.layout import (
 )
 from sim.kernels.lengths import LONGEST_PART, averaged_lengths, part_lengths
 from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_links
-from sim.kernels.moves import carry_on, keep_moment
+from sim.kernels.moves import carry_on
 from sim.kernels.near import fall_behind, hand_over, let_go, look, stand_in
 from sim.kernels.newton import restart
 from sim.kernels.noted import BEGUN, note_given, note_last, note_parts, note_way, note_ways, row_of
@@ -229,11 +230,12 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
     if t[at.FAULT] < 0:
         # What the next step is to find where it was: at the place from which plain velocities would have led there.
         body_at, begun, position = views.body_at(t), views.per_body(t, at.BEGUN_AT), views.per_body(t, at.LAST_POSITION)
-        if t[at.FREE] == 1:
-            keep_moment(t, begun)
         for i in range(t[at.MOVING]):
             b = floats(body_at[i], BODY_WORDS)
-            put_back(body_at[i], begun[i], h, whole)
+            if t[at.FREE] == 1:
+                show(body_at[i], begun[i], h, whole)
+            else:
+                put_back(body_at[i], begun[i], h, whole)
             position[i, 0] += (h - whole) * b[VX]
             position[i, 1] += (h - whole) * b[VX + 1]
             position[i, 2] += (h - whole) * b[SPIN]

@@ -12,7 +12,7 @@ from sim.kernels.guard import choose_scheme
 from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import take_up
 from sim.kernels.layout import BEFORE, BLOW
-from sim.kernels.moves import carry
+from sim.kernels.moves import carry, turn_back
 from sim.kernels.near import drop, gather, let_come
 from sim.kernels.newton import restart
 from sim.kernels.noted import note_end, note_start
@@ -59,11 +59,14 @@ def begin(c, h):  # type: ignore[no-untyped-def]
             # Python notes how all else in the space is.
             call_notice(t[at.NOTICE], t[at.KEY])
     choose_scheme(t, h * spin)
-    take_up(t, ratio, last_step)
+    take_up(t, ratio)
     carry(t, h, last_move, moved, touching)
+    if not math.isnan(settings[at.MOMENT]):
+        turn_back(t)
     add_inertia(t)
     prepare_step(t, settings[BEFORE + at.BETA] != 0.0)
-    if last_step == 0.0:
+    if t[at.NEW] == 1:
+        t[at.NEW] = 0
         book_strained(t)
     settings[at.SUDDEN] = sudden_energy(t, last_step)
     t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY] = 0, 0, 0

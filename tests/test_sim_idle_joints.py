@@ -6,7 +6,7 @@ import pymunk
 import pytest
 from hard_cases import Case, chain, law
 
-from sim import Limits, SolverError, chipmunk
+from sim import DuctileJoint, Limits, SolverError, Structure, chipmunk
 from sim.chipmunk import CONSTRAINTS_OF_SPACE
 
 
@@ -28,13 +28,13 @@ def listed(space: pymunk.Space) -> list[int]:
 def seen_by_python(case: Case, monkeypatch: pytest.MonkeyPatch, steps: int) -> set[int]:
     """How many constraints there were to go through whenever the kernels asked Python for something."""
     seen: set[int] = set()
-    told = case.structure.told
+    told = Structure.told
 
-    def look() -> None:
+    def look(structure: Structure) -> None:
         seen.add(len(listed(case.space)))
-        told()
+        told(structure)
 
-    monkeypatch.setattr(case.structure, "told", look)
+    monkeypatch.setattr(Structure, "told", look)
     for _ in range(steps):
         case.space.step(1 / 60)
     return seen
@@ -47,12 +47,28 @@ def test_one_joint_is_gone_through_while_a_structure_is_solved(monkeypatch: pyte
     assert listed(case.space) == before
 
 
-def test_all_are_gone_through_beside_other_constraints(monkeypatch: pytest.MonkeyPatch) -> None:
+def add_others(case: Case) -> None:
+    """Beside the bar, bodies on pivots of pymunk's own and on another structure's joints, before and after its own."""
+    space, joints = case.space, case.structure.joints
+    space.remove(*joints)
+    bodies = [pymunk.Body(1.0, 1.0) for _ in range(4)]
+    for body, place in zip(bodies, [(3.0, 3.0), (-3.0, 3.0), (-4.0, 3.0), (3.0, 6.0)], strict=True):
+        body.position = place
+    hung = [pymunk.PivotJoint(space.static_body, bodies[i], (2.0, bodies[i].position.y)) for i in (0, 3)]
+    beside = DuctileJoint(space.static_body, bodies[1], (-2.0, 3.0), law(0.05))
+    space.add(*bodies, hung[0], *joints, beside, hung[1], DuctileJoint(bodies[1], bodies[2], (-3.5, 3.0), law(0.05)))
+
+
+def test_all_others_are_gone_through_too_each_in_its_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What acts for two structures, and constraints of pymunk's own; what users have called is called once for each."""
     case = struck()
-    hung = pymunk.Body(1.0, 1.0)
-    hung.position = (3.0, 3.0)
-    case.space.add(hung, pymunk.PivotJoint(case.space.static_body, hung, (2.0, 3.0)))
-    assert seen_by_python(case, monkeypatch, 3) == {9}
+    add_others(case)
+    before, called = listed(case.space), []
+    for one in case.space.constraints:
+        one.post_solve = lambda own, _: called.append(chipmunk.address(own._constraint))
+    assert seen_by_python(case, monkeypatch, 3) == {4, 12}
+    assert called == 3 * before
+    assert listed(case.space) == before
 
 
 def test_all_are_back_after_a_step_that_was_refused() -> None:

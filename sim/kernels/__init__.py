@@ -16,6 +16,7 @@
 | ``energy``, ``guard``, ``strained`` | the ledger, and no energy from nowhere; what was strained before |
 | ``resolved`` | the average-acceleration rule only where it resolves how bodies turn |
 | ``refusal``, ``noted`` | a step that is refused, and what else it has changed in the space |
+| ``idle`` | joints that another one acts for, out of Chipmunk's list while it solves |
 | ``loose``, ``links`` | bodies without joints, for the ledger of a space; Chipmunk's own constraints between them |
 | ``bodies``, ``moves``, ``settle`` | velocities and places; joints, contacts and ties in turn until they agree |
 | ``blow``, ``sudden`` | when a step is taken in parts, inside the one that Chipmunk takes |

@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from sim.chipmunk import CLASS_BYTES, CONSTRAINT_CLASS, CONTROL, LIST_COUNT, POST_SOLVE
+from sim.chipmunk import CLASS_BYTES, CONSTRAINT_CLASS, CONTROL, POST_SOLVE
 from sim.compiling import Ahead, compiled
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.idle import bring_back, leave_out
 from sim.kernels.noted import is_known
-from sim.kernels.owners import list_of_constraints
 from sim.kernels.step import begin, finish, solve
 from sim.memory import call_notice, call_post_solve, integers
 
@@ -78,9 +78,7 @@ def pre_step(digest: str) -> Callable[..., None]:
         if c == 0:
             return  # it has no structure: Python could not make one, and will say so
         t = views.control(c)
-        if t[at.LEADER] != 0:
-            t[at.CALLED] += 1
-        else:
+        if t[at.LEADER] == 0:
             if not is_known(t, constraint):
                 # Python looks through the space, and may give the joint to another structure.
                 t[at.NOTES] = 0
@@ -89,7 +87,7 @@ def pre_step(digest: str) -> Callable[..., None]:
                 if c == 0:
                     return
                 t = views.control(c)
-            t[at.LEADER], t[at.CALLED] = constraint, 1
+            t[at.LEADER] = constraint
             own, tables = integers(constraint, CONTROL), integers(t[at.OWN_CLASS], AFTER_STEP + 1)
             t[at.THEIR_POST_SOLVE] = own[POST_SOLVE] if own[POST_SOLVE] != tables[AFTER_STEP] else 0
             own[CONSTRAINT_CLASS], own[POST_SOLVE] = t[at.OWN_CLASS] + CLASS_BYTES, tables[AFTER_STEP]
@@ -110,22 +108,13 @@ def apply_cached_impulse(digest: str) -> Callable[..., None]:
 
 @_with_digest(_STEP)
 def leave_out_idle(digest: str) -> Callable[..., None]:
-    """Before the first iteration, of the joint that acts for all: Chipmunk is to call no other until the step ends.
-
-    Going through thousands of joints that have nothing to do would cost more than the solve. Where the list has any
-    constraint that is not of this structure, it stays as it is.
-    """
+    """Before the first iteration, of the joint that acts for all: most of the others are not called any more."""
 
     def leave_out_idle(constraint, ratio):  # type: ignore[no-untyped-def]
         digest  # noqa: B018
         c = integers(constraint, CONTROL + 1)[CONTROL]
-        if c == 0:
-            return
-        t, listed = views.control(c), list_of_constraints(constraint)
-        count = listed[LIST_COUNT] & 0xFFFFFFFF
-        if t[at.LEADER] == constraint and t[at.CALLED] == count:
-            t[at.LEFT_OUT] = count - 1
-            listed[LIST_COUNT] -= t[at.LEFT_OUT]
+        if c != 0:
+            leave_out(views.control(c), constraint)
 
     return leave_out_idle
 
@@ -175,9 +164,8 @@ def after_step(digest: str) -> Callable[..., None]:
         c = integers(constraint, CONTROL + 1)[CONTROL]
         if c != 0 and views.control(c)[at.LEADER] == constraint:
             t = views.control(c)
-            # It comes first in the list, so Chipmunk goes on to the next one.
-            list_of_constraints(constraint)[LIST_COUNT] += t[at.LEFT_OUT]
-            t[at.LEADER], t[at.LEFT_OUT] = 0, 0
+            t[at.LEADER] = 0
+            bring_back(t, constraint)
             own = integers(constraint, CONTROL)
             own[CONSTRAINT_CLASS], own[POST_SOLVE] = t[at.OWN_CLASS], t[at.THEIR_POST_SOLVE]
             finish(c)

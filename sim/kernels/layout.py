@@ -52,11 +52,9 @@ THEIR_POST_SOLVE = 40
 SEEN, NEW = 41, 42
 # Whether any lower block of the matrix is not one joint's alone: another's too, or filled in.
 SHARED = 43
-# Joints that Chipmunk has come to in this step; how many of them are not in its list while it solves, see `callbacks`.
-CALLED, LEFT_OUT = 44, 45
 # In `ACTIVE`: the joint holds, and what it stores is not known yet, see `strained`.
 UNKNOWN = 2
-_FIRST_ADDRESS = 46
+_FIRST_ADDRESS = 44
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

@@ -46,12 +46,12 @@ from sim.memory import floats, inlined, integers, kernel
 #: copies of the lists of moving bodies and of constraints, and how long they are; rows of loose bodies and how many;
 #: own constraints and how many, and room for their numbers; rows of contacts, how many there is room for, and how many
 #: were noted; all own constraints, how many, their kinds and how many (see `ties`), and the step in which they were
-#: given to structures.
+#: given to structures; the joint that took others out of Chipmunk's list until it ends its step (see `idle`), or 0.
 STAMP, UNDER_WAY, ENDED, LOOKED, THIS_STEP, LAST_STEP = range(6)
 LISTS, LENGTHS = 6, 8
 LOOSE, LOOSE_COUNT, STOCK, STOCK_COUNT, STOCK_NUMBERS, CONTACTS, CONTACTS_ROOM, CONTACTS_COUNT = range(10, 18)
-TIES, TIES_COUNT, KINDS, KINDS_COUNT, BOUND = range(18, 23)
-NOTES_WORDS = 23
+TIES, TIES_COUNT, KINDS, KINDS_COUNT, BOUND, BY = range(18, 24)
+NOTES_WORDS = 24
 #: A loose body's row: its address; x, y, angle, the six words of its transform, and pseudo-velocities at the end of the
 #: last step; velocities and x, y, angle when this one has moved it.
 #: From there on: the last step in which structures did work on it, and that work [J]; the last step that it went

@@ -116,6 +116,7 @@ def _constraints_fit() -> bool:
     space, a, b, c, d = pymunk.Space(), *(pymunk.Body(1.0, 1.0) for _ in range(4))
     first, last = pymunk.PivotJoint(a, b, (29.0, 31.0), (37.0, 41.0)), pymunk.PivotJoint(c, d, (0.0, 0.0))
     between, unlike = pymunk.PivotJoint(b, c, (0.0, 0.0)), pymunk.GearJoint(a, d, 0.0, 1.0)
+    first.max_force = 73.0
     space.add(a, b, c, d, first, last, between)
     one, two, three, four = (address(joint._constraint) for joint in (first, last, between, unlike))
     kinds = [int(words(location, 1, np.int64)[at.CONSTRAINT_CLASS]) for location in (one, two, four)]
@@ -124,6 +125,7 @@ def _constraints_fit() -> bool:
     fits &= np.array_equal(words(one + 8 * at.CONTROL, 4), [29.0, 31.0, 37.0, 41.0])
     fits &= fields[at.CONSTRAINT_BODY_A] == body_address(a) and fields[at.CONSTRAINT_BODY_B] == body_address(b)
     fits &= fields[at.CONSTRAINT_SPACE] == address(space._space)
+    fits &= words(one, at.CONTROL)[at.CONSTRAINT_MAX_FORCE] == 73.0
     fits &= after[at.CONSTRAINT_NEXT_A] == one and after[at.CONSTRAINT_NEXT_B] == two
     fits &= words(body_address(a), at.BODY_FULL_WORDS, np.int64)[at.CONSTRAINTS] == one
     lib.cpConstraintSetPostSolveFunc(first._constraint, ffi.cast("cpConstraintPostSolveFunc", 73))
@@ -169,7 +171,8 @@ def _contacts_fit() -> bool:
     arbiter |= {"contacts": at.ARBITER_CONTACTS, "n": at.ARBITER_NORMAL, "state": at.ARBITER_STATE}
     contact = {"r1": at.CONTACT_R1, "r2": at.CONTACT_R2, "nMass": at.CONTACT_NORMAL_MASS}
     contact |= {"tMass": at.CONTACT_TANGENT_MASS, "bounce": at.CONTACT_BOUNCE, "jnAcc": at.CONTACT_NORMAL_IMPULSE}
-    contact |= {"jtAcc": at.CONTACT_TANGENT_IMPULSE, "bias": at.CONTACT_BIAS, "hash": at.CONTACT_HASH}
+    contact |= {"jtAcc": at.CONTACT_TANGENT_IMPULSE, "jBias": at.CONTACT_BIAS_IMPULSE}
+    contact |= {"bias": at.CONTACT_BIAS, "hash": at.CONTACT_HASH}
     whole = ffi.sizeof("struct cpContact") == at.CONTACT_BYTES == 8 * at.CONTACT_WORDS
     return whole and _begin("cpArbiter", arbiter) and _begin("struct cpContact", contact)
 

@@ -22,11 +22,14 @@ class LooseMotion(NamedTuple):
     given : (n,) float
         Energy that came with going back to when something touched [J].
     by_structures : (n,) float
-        Work of structures' contacts [J].
+        Work of contacts that were solved with structures [J].
     mean, last : (n, 3) float
         Mean velocities in the step, and in its last part.
+    lost : (n,) float
+        By those of them that loose bodies have with each other and with held ones [J].
     begun : dict
-        By their addresses, normal and tangential impulses of contacts before the parts.
+        By their addresses, normal and tangential impulses of contacts before the parts; no numbers for those that went
+        through them.
     """
 
     way: np.ndarray
@@ -34,6 +37,7 @@ class LooseMotion(NamedTuple):
     by_structures: np.ndarray
     mean: np.ndarray
     last: np.ndarray
+    lost: np.ndarray
     begun: dict[int, tuple[float, float]]
 
 
@@ -42,7 +46,7 @@ def motion_of(
 ) -> LooseMotion:
     """That of the bodies at ``addresses``, sorted by ``order``, in the step that ended, with these velocities."""
     n, mean = len(now), 0.5 * (start + now)
-    motion = LooseMotion(space.current_time_step * mean, np.zeros(n), np.zeros(n), mean, mean.copy(), {})
+    motion = LooseMotion(space.current_time_step * mean, np.zeros(n), np.zeros(n), mean, mean.copy(), np.zeros(n), {})
     notes = notes_known(space)
     if notes is None or not n:
         return motion
@@ -50,7 +54,7 @@ def motion_of(
     rows = rows[(rows[:, noted.WORKED] == stamp) | (rows[:, noted.IN_PARTS] == stamp)]
     of = order[np.searchsorted(addresses, rows[:, 0].copy().view(np.int64), sorter=order)]
     worked, parts = rows[:, noted.WORKED] == stamp, rows[:, noted.IN_PARTS] == stamp
-    motion.by_structures[of[worked]] = rows[worked, noted.WORK]
+    motion.by_structures[of[worked]], motion.lost[of[worked]] = rows[worked, noted.WORK], rows[worked, noted.LOST]
     of, rows = of[parts], rows[parts]
     motion.way[of], motion.given[of] = rows[:, noted.WAY : noted.WAY + 3], rows[:, noted.GIVEN]
     motion.mean[of] = motion.way[of] / rows[:, [noted.SPAN]]

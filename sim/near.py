@@ -7,7 +7,7 @@ before they meet.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,9 +18,14 @@ from sim.first_touch import pass_each_other
 from sim.inner_edges import pass_inner_edges
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
+from sim.kernels.noted import MATE
 
 if TYPE_CHECKING:
+    from sim.noted import Notes
     from sim.structure import Structure
+
+# A shape of a structure's, or another one beside it; the other one; how far each reaches from its body's centre [m].
+Pair = tuple[pymunk.Shape, pymunk.Shape, float, float]
 
 # Bodies may go so many times as far in a step as the fastest of them does by its velocity.
 _FASTER = 2.0
@@ -37,47 +42,52 @@ class Surroundings:
 
     def __init__(self) -> None:
         self._pairs: list[tuple[pymunk.Shape, pymunk.Shape]] = []
-        self._copies: dict[pymunk.Shape, object] = {}
-        self._impulses = np.zeros((0, chipmunk.CONTACT_WORDS))
+        self._copies: dict[tuple[pymunk.Shape, int], object] = {}
+        self._impulses: list[np.ndarray] = []
 
-    def answer(self, structure: Structure) -> None:
+    def answer(self, structure: Structure, notes: Notes) -> None:
         """Do what the kernels ask for, see `sim.kernels.near`."""
         asked = int(structure.tables.control[at.ASKED])
         if asked == at.GATHER:
-            self._gather(structure)
+            control = structure.tables.control
+            index = {body: i for i, body in enumerate(structure.bodies[: int(control[at.MOVING])])}
+            self._impulses = []
+            self._add(structure, list(_pairs(structure, index)), index)
+        elif asked == at.GATHER_BESIDE:
+            self._add(structure, list(_pairs_beside(structure, notes)), {})
         elif asked == at.LOOK:
             self._look(structure)
         else:
             # The contacts themselves are read until the next step begins.
             self._pairs, self._copies = [], {}
 
-    def _gather(self, structure: Structure) -> None:
-        """List the pairs, and make two contacts of each that are not seen yet."""
+    def _add(self, structure: Structure, pairs: list[Pair], index: Mapping[pymunk.Body, int]) -> None:
+        """Add pairs to those that are listed, and make two contacts of each that are not seen yet."""
         tables = structure.tables
-        index = {body: i for i, body in enumerate(structure.bodies[: int(tables.control[at.MOVING])])}
-        pairs = list(_pairs(structure, index))
-        if not pairs:
-            return
-        self._pairs = [(own, other) for own, other, _, _ in pairs]
+        self._pairs += [(own, other) for own, other, _, _ in pairs]
         first, count = int(tables.control[at.CONTACTS]), _POINTS * len(pairs)
         if first + count > tables.control[at.ROOM]:
             tables.make_room(first + 2 * count)
-        tables.control[at.NEAR] = count
-        self._impulses = np.zeros((count, chipmunk.CONTACT_WORDS))
+        tables.control[at.NEAR] += count
+        impulses = np.zeros((count, chipmunk.CONTACT_WORDS))
+        self._impulses.append(impulses)
         places, touches = tables[at.PLACES][first : first + count], tables[at.TOUCHES][first : first + count]
         places[:], touches[:] = 0, 0.0
-        places[:, at.WHERE] = self._impulses.ctypes.data + chipmunk.CONTACT_BYTES * np.arange(count)
-        places[:, at.OWNER_A], touches[:, at.GAP] = tables.control.ctypes.data, at.FAR
+        places[:, at.WHERE] = impulses.ctypes.data + chipmunk.CONTACT_BYTES * np.arange(count)
+        touches[:, at.GAP] = at.FAR
         for k, (own, other, *reach) in enumerate(pairs):
             rows = slice(_POINTS * k, _POINTS * (k + 1))
             assert own.body is not None
             assert other.body is not None
-            places[rows, at.INDEX_A] = index[own.body]
+            if own.body in index:
+                places[rows, at.OWNER_A], places[rows, at.INDEX_A] = tables.control.ctypes.data, index[own.body]
             places[rows, at.BODY_A] = chipmunk.body_address(own.body)
             places[rows, at.BODY_B] = chipmunk.body_address(other.body)
             touches[rows, at.FRICTION] = own.friction * other.friction
             touches[rows, at.RETURN] = own.elasticity * other.elasticity
             touches[rows, at.REACH : at.REACH + 2] = reach
+            # What rolls keeps its point where it is below its centre.
+            touches[rows, at.MEETING] = 0.5 + 0.5 * (isinstance(other, pymunk.Circle) - isinstance(own, pymunk.Circle))
 
     def _look(self, structure: Structure) -> None:
         """Find where the surfaces of the pairs are nearest, up to a margin."""
@@ -87,18 +97,17 @@ class Surroundings:
         count = _POINTS * len(self._pairs)
         first = int(tables.control[at.CONTACTS]) - count
         touches, boxes, centres = tables[at.TOUCHES][first : first + count], {}, {}
-        own_shapes = dict.fromkeys(own for own, _ in self._pairs)
-        for shape in own_shapes | dict.fromkeys(other for _, other in self._pairs):
-            if shape not in self._copies:
-                self._copies[shape] = shape_copies.copy_of(shape)
-            if shape in own_shapes:
-                shape_copies.grow(shape, self._copies[shape], margin)
+        for shape, side in dict.fromkeys((pair[side], side) for pair in self._pairs for side in range(2)):
+            if (shape, side) not in self._copies:
+                self._copies[shape, side] = shape_copies.copy_of(shape)
+            if side == 0:
+                shape_copies.grow(shape, self._copies[shape, side], margin)
             assert shape.body is not None
-            boxes[shape] = shape_copies.bring_up_to_date(self._copies[shape])
+            boxes[shape, side] = shape_copies.bring_up_to_date(self._copies[shape, side])
             centres[shape] = chipmunk.centre_of(shape.body)
         touches[:, at.GAP] = at.FAR
         for k, (own, other) in enumerate(self._pairs):
-            if not boxes[own].intersects(boxes[other]):
+            if not boxes[own, 0].intersects(boxes[other, 1]):
                 continue
             (nx, ny), points = self._nearest(own, other)
             ux, uy = np.subtract(other.surface_velocity, own.surface_velocity).tolist()
@@ -118,7 +127,7 @@ class Surroundings:
 
         Points that do not face each other tell. So the other shape is moved out of line, by next to nothing.
         """
-        one, two = self._copies[own], self._copies[other]
+        one, two = self._copies[own, 0], self._copies[other, 1]
         normal, points = shape_copies.nearest_points(one, two)
         enough = _IN_LINE * _extent(own)[1]
         if _face(normal, points, enough):
@@ -140,9 +149,7 @@ def _face(normal: tuple[float, float], points: list[tuple[float, float, float, f
     return all(abs((by - ay) * normal[0] - (bx - ax) * normal[1]) <= most for ax, ay, bx, by in points)
 
 
-def _pairs(
-    structure: Structure, index: Collection[pymunk.Body]
-) -> Iterator[tuple[pymunk.Shape, pymunk.Shape, float, float]]:
+def _pairs(structure: Structure, index: Collection[pymunk.Body]) -> Iterator[Pair]:
     """Pairs of shapes whose boxes may overlap within the step, and how far each reaches from its body's centre.
 
     In an order that does not depend on how they are found.
@@ -172,6 +179,31 @@ def _pairs(
             yield shapes[i], others[j][0], float(reaches[i]), their_reaches[j]
 
 
+def _pairs_beside(structure: Structure, notes: Notes) -> Iterator[Pair]:
+    """Pairs of a held shape, or of one of a structure's mates, and one of its mates'; as `_pairs`.
+
+    Its mates are the loose bodies that go through the parts with it, see `sim.kernels.beside`.
+    """
+    marked = notes.loose[notes.loose[:, MATE] == 1.0, 0].copy().view(np.int64).tolist()
+    space = next(body.space for body in structure.bodies if body.space is not None)
+    mates = {body: marked.index(one) for body in space.bodies if (one := chipmunk.body_address(body)) in marked}
+    h = float(structure.tables[at.SETTINGS][at.WHOLE_STEP])
+    for body in sorted(mates, key=mates.__getitem__):
+        for shape in sorted(body.shapes, key=_number):
+            (left, bottom, right, top), reach, speed = _extent(shape)
+            way = _FASTER * h * speed
+            around = pymunk.BB(left - way, bottom - way, right + way, top + way)
+            for other in sorted(space.bb_query(around, pymunk.ShapeFilter()), key=_number):
+                assert other.body is not None
+                held = other.body.body_type != pymunk.Body.DYNAMIC
+                if (
+                    (held or mates.get(other.body, -1) > mates[body])
+                    and not (shape.sensor or other.sensor)
+                    and _collide(space, other, shape)
+                ):
+                    yield other, shape, _extent(other)[1], reach
+
+
 def _speed_at(body: int) -> float:
     """How fast the body at an address moves [m/s]."""
     return float(np.hypot(*chipmunk.words(body, chipmunk.BODY_WORDS)[[chipmunk.VX, chipmunk.VY]]))
@@ -193,7 +225,7 @@ def _extent(shape: pymunk.Shape) -> tuple[tuple[float, float, float, float], flo
 def _is_free(body: pymunk.Body | None, touching: np.ndarray) -> bool:
     """Whether a body may be solved with a structure within a step: parts do not know how constraints move it.
 
-    But for those at the addresses that are ``touching`` when it begins.
+    But for those at the addresses that are ``touching`` when it begins, and what constraints link to them.
     """
     if body is None or body.is_sleeping:
         return False
@@ -204,7 +236,19 @@ def _is_free(body: pymunk.Body | None, touching: np.ndarray) -> bool:
             control = joint.structure.tables.control
             # That one has listed this one's shapes among its own already, if it was first.
             return not (control[at.NEAR] > 0 or control[at.SPREAD] or joint.structure.whole_steps_only)
-    return chipmunk.body_address(body) in touching
+    return any(chipmunk.body_address(one) in touching for one in _linked(body))
+
+
+def _linked(body: pymunk.Body) -> list[pymunk.Body]:
+    """A body and all dynamic ones that constraints link to it."""
+    found = {body: None}
+    for one in (reached := [body]):
+        for joint in chipmunk.constraints_on(one):
+            for other in () if isinstance(joint, DuctileJoint) else (joint.a, joint.b):
+                if other not in found and other.body_type == pymunk.Body.DYNAMIC:
+                    found[other] = None
+                    reached.append(other)
+    return reached
 
 
 def _collide(space: pymunk.Space, one: pymunk.Shape, other: pymunk.Shape) -> bool:

@@ -18,8 +18,8 @@ from sim.chipmunk import CONSTRAINT_CLASS, CONTROL, address, words
 #: What an impulse works along: a line between two points, both directions at a point, or the bodies' turning.
 LINE, POINT, TURN = 0, 1, 2
 #: Words of a row of `kinds`.
-KIND_CLASS, KIND_IMPULSE, KIND_COUNT, KIND_HOLDS, KIND_WAY, KIND_MASS, KIND_ARMS, KIND_AXIS = range(8)
-KIND_RATIO, KIND_TARGET, KIND_COEFFICIENT, KIND_DAMPING, KIND_WORDS = 8, 9, 10, 11, 12
+KIND_CLASS, KIND_IMPULSE, KIND_COUNT, KIND_WAY, KIND_MASS, KIND_ARMS, KIND_AXIS = range(7)
+KIND_RATIO, KIND_TARGET, KIND_COEFFICIENT, KIND_DAMPING, KIND_WORDS = 7, 8, 9, 10, 11
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,6 @@ class Kind:
     target, coefficient, damping : int
         Of a spring's damper: velocity of the ends against each other that it has led to in this step, share of what is
         above that which it takes, and its constant.
-    drives : bool
-        Whether it gives energy of its own, as motors and springs do.
     """
 
     make: Callable[[pymunk.Body, pymunk.Body], pymunk.Constraint]
@@ -60,7 +58,6 @@ class Kind:
     target: int = 0
     coefficient: int = 0
     damping: int = 0
-    drives: bool = False
 
 
 #: Where the constraints of `Kind.make` hold the two bodies, from their centres.
@@ -76,7 +73,7 @@ KINDS: dict[type[pymunk.Constraint], Kind] = {
     pymunk.RotaryLimitJoint: Kind(lambda a, b: pymunk.RotaryLimitJoint(a, b, 0.0, 1.0), 17, TURN, 15),
     pymunk.RatchetJoint: Kind(lambda a, b: pymunk.RatchetJoint(a, b, 0.0, 1.0), 18, TURN, 16),
     pymunk.GearJoint: Kind(lambda a, b: pymunk.GearJoint(a, b, 0.0, 1.0), 18, TURN, 16, ratio=14),
-    pymunk.SimpleMotor: Kind(lambda a, b: pymunk.SimpleMotor(a, b, 1.0), 15, TURN, 14, drives=True),
+    pymunk.SimpleMotor: Kind(lambda a, b: pymunk.SimpleMotor(a, b, 1.0), 15, TURN, 14),
     pymunk.DampedSpring: Kind(
         lambda a, b: pymunk.DampedSpring(a, b, ON_A, ON_B, 0.0, 1.0, 1.0),
         30,
@@ -87,7 +84,6 @@ KINDS: dict[type[pymunk.Constraint], Kind] = {
         target=21,
         coefficient=22,
         damping=19,
-        drives=True,
     ),
     pymunk.DampedRotarySpring: Kind(
         lambda a, b: pymunk.DampedRotarySpring(a, b, 1.0, 1.0, 1.0),
@@ -97,7 +93,6 @@ KINDS: dict[type[pymunk.Constraint], Kind] = {
         target=17,
         coefficient=18,
         damping=15,
-        drives=True,
     ),
 }
 
@@ -110,7 +105,7 @@ def kinds() -> np.ndarray:
     for row, kind in zip(rows, KINDS.values(), strict=True):
         constraint = address(kind.make(a, b)._constraint)
         row[KIND_CLASS] = words(constraint, 1, np.int64)[CONSTRAINT_CLASS]
-        row[KIND_IMPULSE:KIND_WAY] = kind.impulse, kind.count, not kind.drives
+        row[KIND_IMPULSE:KIND_WAY] = kind.impulse, kind.count
         row[KIND_WAY:KIND_TARGET] = kind.way, kind.mass, kind.arms, kind.axis, kind.ratio
         row[KIND_TARGET:] = kind.target, kind.coefficient, kind.damping
     return rows

@@ -231,7 +231,7 @@ class Structure(Readings):
     def told(self) -> None:
         """Something happened in a step that the space has not left yet; called by the kernels."""
         if self._control[at.ASKED]:
-            self._surroundings.answer(self)
+            self._surroundings.answer(self, self._notes)
             return
         if not self._control[at.NOTES]:
             from sim.grouping import look_through

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pymunk
 
@@ -66,7 +68,8 @@ class LooseLedger:
         struck = np.where(was == JOINED, JOINED, kind)
         by_contacts, by_others, lost = self._contacts(struck, motion, places, touches, h)
         by_structures = np.where(stayed, motion.by_structures, 0.0)
-        by_contacts, by_others = by_contacts + by_structures, by_others + float(by_structures.sum())
+        by_contacts, lost = by_contacts + by_structures, lost + float(motion.lost.sum())
+        by_others += float(by_structures.sum() + motion.lost.sum())
         # All that changed a body's motion beside its weight and contacts.
         rest = np.where(stayed, gained - weight - by_contacts, 0.0)
         tied = kind == TIED
@@ -119,7 +122,7 @@ class LooseLedger:
             # Chipmunk uses an arbiter again for other shapes.
             key = arbiter, hashed, *(int(self._addresses[i]) if i >= 0 else -1 for i in (a, b))
             self._impulses[key] = self._stamp, jn, jt
-            if JOINED in (kind[i] for i in (a, b) if i >= 0):
+            if JOINED in (kind[i] for i in (a, b) if i >= 0) or math.isnan(motion.begun.get(where, (0.0, 0.0))[0]):
                 continue
             # What a contact keeps has the last steps' impulse in it, of which Chipmunk has applied a share.
             share = 0.0 if first else ratio

@@ -21,7 +21,7 @@
 | ``bodies``, ``moves``, ``settle`` | velocities and places; joints, contacts and ties in turn until they agree |
 | ``blow``, ``sudden`` | when a step is taken in parts, inside the one that Chipmunk takes |
 | ``parts``, ``part``, ``lengths`` | how it is taken in them, and how long they are |
-| ``near``, ``late`` | contacts that come and go within a step; bodies that touched before it began |
+| ``near``, ``beside``, ``late`` | contacts that come, go, or are beside a group; bodies that touched before a step |
 | ``step``, ``callbacks`` | one step of a structure, and the functions that Chipmunk calls |
 """
 

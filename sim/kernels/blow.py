@@ -15,8 +15,7 @@ is over:
   as long loses n times that in its time.
 
 So the largest and the lasting deflection are found at any step; what swings behind them is damped as ever. Nothing is
-spent on this where nothing is hit. What constraints of Chipmunk's own tie to a structure, and vehicles, are
-left to whole steps.
+spent on this where nothing is hit. A structure that constraints of Chipmunk's own hold is left to whole steps.
 """
 
 import math

@@ -45,13 +45,16 @@ from sim.kernels.layout import (
     WANTED,
     WHERE,
 )
+from sim.kernels.links import links_of, pull
 from sim.kernels.overlap import MOST_SWEEPS, push_apart
 from sim.kernels.residual import descend, reach_of
-from sim.kernels.rows import add_row, direction, other_velocity, own_velocity, push_loose, sum_up
+from sim.kernels.rows import add_row, direction, loose_velocity, own_velocity, push_loose, sum_up
 from sim.memory import floats, kernel
 
 #: What `touch` gives when an impulse is not a number: nothing was changed then.
 NOT_FINITE = -1.0
+# Constraints of loose bodies agree once a sweep changes so much of what one did at the most, as energies, or of all.
+_AGREED, _STILL = 1e-10, 1e-20
 
 
 @kernel
@@ -91,11 +94,9 @@ def touch(head):  # type: ignore[no-untyped-def]
     v, change = np.empty(2 * count), np.zeros(2 * count)
     for r in range(2 * count):
         v[r] = relative(places[r >> 1], touches[r >> 1], r)
-    largest = complement(places, touches, g, v, change)
+    largest = complement(head, places, touches, g, v, change)
     if not math.isfinite(largest):
         return NOT_FINITE
-    for r in range(2 * count):
-        push_loose(places[r >> 1], touches[r >> 1], r, change[r], VX, SPIN)
     c = head
     while c != 0:
         t = views.control(c)
@@ -120,9 +121,7 @@ def factorise_group(head):  # type: ignore[no-untyped-def]
 @kernel
 def relative(place, touch, row):  # type: ignore[no-untyped-def]
     """Velocity of b relative to a along a row, that of the surface included."""
-    total = 0.0
-    if place[OWNER_A] == 0 or place[OWNER_B] == 0:
-        total = other_velocity(place[OWNER_A] + place[OWNER_B], place, touch, row)
+    total = loose_velocity(place, touch, row)
     if place[OWNER_A] != 0:
         c = place[OWNER_A]
         total += own_velocity(c, place, touch, row, views.per_body(views.control(c), at.VELOCITY))
@@ -158,11 +157,13 @@ def operator(places, touches):  # type: ignore[no-untyped-def]
             solve(t, first, solution)
             for r in range(rows):
                 g[r, k] += own_velocity(c, places[r >> 1], touches[r >> 1], r, solution)
-        if one == 0 or two == 0:
-            loose = place[BODY_A] if one == 0 else place[BODY_B]
+        for side in range(2):
+            if (two if side == 1 else one) != 0:
+                continue
+            loose = place[BODY_A] if side == 0 else place[BODY_B]
             b = floats(loose, BODY_FULL_WORDS)
             dx, dy, ma, mb = direction(touch, k)
-            sign, moment = (-1.0, ma) if one == 0 else (1.0, mb)
+            sign, moment = (-1.0, ma) if side == 0 else (1.0, mb)
             for r in range(rows):
                 p = places[r >> 1]
                 ex, ey, na, nb = direction(touches[r >> 1], r)
@@ -176,11 +177,16 @@ def operator(places, touches):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def complement(places, touches, g, v, change):  # type: ignore[no-untyped-def]
-    """Projected Gauss–Seidel on G; changes the accumulated impulses, returns the largest change over them."""
-    rows = len(v)
+def complement(head, places, touches, g, v, change):  # type: ignore[no-untyped-def]
+    """Projected Gauss–Seidel on G; changes the accumulated impulses and loose bodies' velocities.
+
+    Constraints between loose bodies have their turn in every sweep, see `links`. Returns the largest change of an
+    impulse over the largest one; where that is not finite, loose bodies may be anywhere.
+    """
+    rows, links, most = len(v), links_of(head), 0.0
+    h, pushed = views.settings(views.control(head))[STEP], np.zeros(len(v))
     for _ in range(MOST_SWEEPS):
-        moved, size = 0.0, 0.0
+        moved, size, agreed = 0.0, 0.0, True
         for r in range(rows):
             if g[r, r] <= 0.0:
                 continue
@@ -202,14 +208,39 @@ def complement(places, touches, g, v, change):  # type: ignore[no-untyped-def]
                 change[r] += step
                 for k in range(rows):
                     v[k] += g[k, r] * step
-        if moved <= 1e-10 * size:
+        if len(links) > 0:
+            give(places, touches, change, pushed)
+            of_change, of_all = pull_all(links, h, places, touches, v)
+            most = max(most, of_change)
+            agreed = of_change <= _AGREED * most + _STILL * of_all
+        if moved <= 1e-10 * size and agreed:
             break
+    give(places, touches, change, pushed)
     largest, size = 0.0, 0.0
     for r in range(rows):
         size = max(size, floats(places[r >> 1, WHERE], CONTACT_WORDS)[CONTACT_NORMAL_IMPULSE])
         # Added, and not compared, so that no number that is not finite slips through.
         largest = max(largest, abs(change[r])) + 0.0 * change[r]
     return largest / size if size > 0.0 else largest
+
+
+@kernel
+def give(places, touches, change, pushed):  # type: ignore[no-untyped-def]
+    """Give loose bodies what impulses have changed by, but for what has been ``pushed`` before."""
+    for r in range(len(change)):
+        push_loose(places[r >> 1], touches[r >> 1], r, change[r] - pushed[r], VX, SPIN)
+        pushed[r] = change[r]
+
+
+@kernel
+def pull_all(links, h, places, touches, v):  # type: ignore[no-untyped-def]
+    """Solve constraints of loose bodies once, see `pull`; their contacts' velocities ``v`` change with theirs."""
+    for r in range(len(v)):
+        v[r] -= loose_velocity(places[r >> 1], touches[r >> 1], r)
+    of_change, of_all = pull(links, h)
+    for r in range(len(v)):
+        v[r] += loose_velocity(places[r >> 1], touches[r >> 1], r)
+    return of_change, of_all
 
 
 @kernel

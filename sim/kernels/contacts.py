@@ -44,7 +44,6 @@ from sim.chipmunk import (
     SPACE_SLOP,
     SPACE_WORDS,
     SPIN,
-    VX,
     X,
 )
 from sim.kernels import layout as at
@@ -63,13 +62,14 @@ from sim.kernels.layout import (
     HASH,
     INDEX_A,
     INDEX_B,
-    LOOSE_START,
     MASSES,
+    MEETING,
     NORMAL,
     OTHER_START,
     OWNER_A,
     OWNER_B,
     PUSH,
+    RETURN,
     SURFACE,
     WANTED,
     WHERE,
@@ -99,7 +99,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
         own = body_at[i]
         arbiter = integers(own, BODY_FULL_WORDS)[ARBITERS]
         while arbiter != 0:
-            w, f = integers(arbiter, ARBITER_WORDS), floats(arbiter, ARBITER_WORDS)
+            w = integers(arbiter, ARBITER_WORDS)
             is_a = w[ARBITER_BODY_A] == own
             other = w[ARBITER_BODY_B] if is_a else w[ARBITER_BODY_A]
             contacts = w[ARBITER_COUNT] & 0xFFFFFFFF
@@ -115,46 +115,57 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 if owner != 0 and owner != c:
                     unite(c, owner)
                 p, touch = places[count], touches[count]
-                p[WHERE], p[HASH] = where, integers(where, CONTACT_WORDS)[CONTACT_HASH]
+                load_contact(arbiter, where, p, touch)
                 p[OWNER_A], p[INDEX_A] = (c, i) if is_a else (owner, j)
                 p[OWNER_B], p[INDEX_B] = (owner, j) if is_a else (c, i)
-                p[BODY_A], p[BODY_B] = w[ARBITER_BODY_A], w[ARBITER_BODY_B]
-                nx, ny = f[ARBITER_NORMAL], f[ARBITER_NORMAL + 1]
-                touch[NORMAL], touch[NORMAL + 1] = nx, ny
-                touch[ARM_A], touch[ARM_A + 1] = contact[CONTACT_R1], contact[CONTACT_R1 + 1]
-                touch[ARM_B], touch[ARM_B + 1] = contact[CONTACT_R2], contact[CONTACT_R2 + 1]
-                touch[FRICTION] = f[ARBITER_FRICTION]
-                touch[SURFACE] = -ny * f[ARBITER_SURFACE] + nx * f[ARBITER_SURFACE + 1]
-                touch[WANTED] = -contact[CONTACT_BOUNCE]
-                touch[BOUNCE], touch[GAP] = touch[WANTED], distance(p, touch)
                 spare = min(slop, kept(p, touch, h)) + touch[GAP]
                 if touch[WANTED] == 0.0 and spare > 0.0:
                     touch[WANTED] = -SETTLE * spare / h
-                touch[PUSH] = contact[CONTACT_BIAS]
                 if w[ARBITER_STATE] & 0xFFFFFFFF == FIRST:
                     contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE] = 0.0, 0.0
                 touch[CACHED], touch[CACHED + 1] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_TANGENT_IMPULSE]
-                touch[EARLIER], touch[EARLIER + 1] = 0.0, 0.0
                 touch[HALF], touch[HALF + 1] = meet(p, touch)
-                load_loose(touch, floats(other, BODY_WORDS))
                 for row in range(2):
                     touch[OTHER_START + row] = other_velocity(c, p, touch, row)
                 if looking and w[ARBITER_STATE] & 0xFFFFFFFF == FIRST and came_from_elsewhere(c, t, p, touch, slop):
                     contact[CONTACT_NORMAL_MASS] *= -1.0
                     astray += 1
                     continue
-                for axis in range(2):
-                    contact[CONTACT_R1 + axis] = touch[ARM_A + axis]
-                    contact[CONTACT_R2 + axis] = touch[ARM_B + axis]
-                touch[MASSES], touch[MASSES + 1] = contact[CONTACT_NORMAL_MASS], contact[CONTACT_TANGENT_MASS]
-                contact[CONTACT_NORMAL_MASS] = 0.0
-                contact[CONTACT_TANGENT_MASS] = 0.0
+                seize(contact, touch)
                 count += 1
             arbiter = w[ARBITER_NEXT_A] if is_a else w[ARBITER_NEXT_B]
     arrange(places, touches, count)
     t[at.CONTACTS], t[at.MISSED] = count, missed
     if looking:
         t[at.ASTRAY] = astray
+
+
+@kernel
+def load_contact(arbiter, where, place, touch):  # type: ignore[no-untyped-def]
+    """Copy what Chipmunk says of the contact at ``where``."""
+    w, f, contact = integers(arbiter, ARBITER_WORDS), floats(arbiter, ARBITER_WORDS), floats(where, CONTACT_WORDS)
+    place[WHERE], place[HASH] = where, integers(where, CONTACT_WORDS)[CONTACT_HASH]
+    place[BODY_A], place[BODY_B] = w[ARBITER_BODY_A], w[ARBITER_BODY_B]
+    nx, ny = f[ARBITER_NORMAL], f[ARBITER_NORMAL + 1]
+    touch[NORMAL], touch[NORMAL + 1] = nx, ny
+    touch[ARM_A], touch[ARM_A + 1] = contact[CONTACT_R1], contact[CONTACT_R1 + 1]
+    touch[ARM_B], touch[ARM_B + 1] = contact[CONTACT_R2], contact[CONTACT_R2 + 1]
+    touch[FRICTION] = f[ARBITER_FRICTION]
+    touch[SURFACE] = -ny * f[ARBITER_SURFACE] + nx * f[ARBITER_SURFACE + 1]
+    touch[WANTED] = -contact[CONTACT_BOUNCE]
+    touch[BOUNCE], touch[GAP], touch[PUSH] = touch[WANTED], distance(place, touch), contact[CONTACT_BIAS]
+    touch[EARLIER], touch[EARLIER + 1], touch[RETURN], touch[MEETING] = 0.0, 0.0, 0.0, 0.5
+
+
+@kernel
+def seize(contact, touch):  # type: ignore[no-untyped-def]
+    """Keep Chipmunk from solving a contact, whose arms become those of ``touch``; `hand_back` undoes it."""
+    for axis in range(2):
+        contact[CONTACT_R1 + axis] = touch[ARM_A + axis]
+        contact[CONTACT_R2 + axis] = touch[ARM_B + axis]
+    touch[MASSES], touch[MASSES + 1] = contact[CONTACT_NORMAL_MASS], contact[CONTACT_TANGENT_MASS]
+    contact[CONTACT_NORMAL_MASS] = 0.0
+    contact[CONTACT_TANGENT_MASS] = 0.0
 
 
 @kernel
@@ -188,12 +199,6 @@ def came_from_elsewhere(c, t, place, touch, slop):  # type: ignore[no-untyped-de
 
 
 @kernel
-def load_loose(touch, b):  # type: ignore[no-untyped-def]
-    """Note how fast the other body of a contact is."""
-    touch[LOOSE_START], touch[LOOSE_START + 1], touch[LOOSE_START + 2] = b[VX], b[VX + 1], b[SPIN]
-
-
-@kernel
 def distance(place, touch):  # type: ignore[no-untyped-def]
     """Distance of the two surfaces at a contact, negative where they overlap [m]."""
     a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
@@ -204,16 +209,17 @@ def distance(place, touch):  # type: ignore[no-untyped-def]
 
 @kernel
 def meet(place, touch):  # type: ignore[no-untyped-def]
-    """Have a contact act on both bodies at one point, halfway between those on their surfaces; returns half that way.
+    """Have a contact act on both bodies at one point between those on their surfaces; returns the way from a's to it.
 
     Opposite impulses at two points are a couple, friction's where surfaces overlap: angular momentum from nowhere.
     """
     a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
-    x = 0.5 * (b[X] + touch[ARM_B] - a[X] - touch[ARM_A])
-    y = 0.5 * (b[X + 1] + touch[ARM_B + 1] - a[X + 1] - touch[ARM_A + 1])
-    touch[ARM_A], touch[ARM_A + 1] = touch[ARM_A] + x, touch[ARM_A + 1] + y
-    touch[ARM_B], touch[ARM_B + 1] = touch[ARM_B] - x, touch[ARM_B + 1] - y
-    return x, y
+    x = b[X] + touch[ARM_B] - a[X] - touch[ARM_A]
+    y = b[X + 1] + touch[ARM_B + 1] - a[X + 1] - touch[ARM_A + 1]
+    of_a, of_b = touch[MEETING], 1.0 - touch[MEETING]
+    touch[ARM_A], touch[ARM_A + 1] = touch[ARM_A] + of_a * x, touch[ARM_A + 1] + of_a * y
+    touch[ARM_B], touch[ARM_B + 1] = touch[ARM_B] - of_b * x, touch[ARM_B + 1] - of_b * y
+    return of_a * x, of_a * y
 
 
 @kernel

@@ -41,6 +41,7 @@ from sim.kernels.guard import relative_velocity, rigid_motion
 from sim.kernels.inertia import moment_of
 from sim.kernels.kinematics import impulses, rates
 from sim.kernels.layout import (
+    B_START,
     BETA,
     BODY_A,
     BODY_B,
@@ -61,8 +62,8 @@ from sim.kernels.layout import (
     WHERE,
     WHOLE_RATIO,
 )
-from sim.kernels.noted import note_work
-from sim.kernels.rows import other_velocity, own_velocity
+from sim.kernels.noted import note_work, row_of
+from sim.kernels.rows import other_velocity, own_velocity, velocity_of_b
 from sim.memory import floats, inlined, kernel
 
 # Of a step.
@@ -179,7 +180,8 @@ def contacts(c, t, start, end):  # type: ignore[no-untyped-def]
     given, arrived = 0.0, 0.0
     for k in range(t[at.CONTACTS]):
         place, touch = places[k], touches[k]
-        contact, loose = floats(place[WHERE], CONTACT_WORDS), 0.0
+        contact, loose, of_b = floats(place[WHERE], CONTACT_WORDS), 0.0, 0.0
+        neither = place[OWNER_A] == 0 and place[OWNER_B] == 0
         for row in range(2):
             total = contact[CONTACT_TANGENT_IMPULSE] if row == 1 else contact[CONTACT_NORMAL_IMPULSE]
             # Chipmunk scales what it applies of the cached impulse by the ratio of the steps, but not what it keeps.
@@ -187,7 +189,14 @@ def contacts(c, t, start, end):  # type: ignore[no-untyped-def]
             own0, own1 = own_velocity(c, place, touch, row, start), own_velocity(c, place, touch, row, end)
             loose += 0.5 * impulse * (touch[OTHER_START + row] + other_velocity(c, place, touch, row))
             arrived += 0.5 * impulse * (own0 + own1)
+            if neither:
+                of_b += 0.5 * impulse * (touch[B_START + row] + velocity_of_b(place, touch, row))
+        if neither:
+            note_work(t, place[BODY_A], loose - of_b, 0.0)
+            note_work(t, place[BODY_B], of_b, 0.0)
+            note_work(t, place[BODY_B] if row_of(t, place[BODY_A]) == 0 else place[BODY_A], 0.0, -loose)
+            continue
         given -= loose
         if loose != 0.0 and (place[OWNER_A] == 0 or place[OWNER_B] == 0):
-            note_work(t, place[BODY_A] if place[OWNER_A] == 0 else place[BODY_B], loose)
+            note_work(t, place[BODY_A] if place[OWNER_A] == 0 else place[BODY_B], loose, 0.0)
     return given, arrived

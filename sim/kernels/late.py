@@ -9,9 +9,9 @@ from sim.chipmunk import BODY_WORDS, MASS_INVERSE, SPIN, VX
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import load_positions, move
-from sim.kernels.contacts import space_slop
 from sim.kernels.inertia import moment_of
-from sim.kernels.layout import GAP, INVERSE_M, LOOSE_START, MOVE, OTHER_START, STRIKE, WHOLE_STEP
+from sim.kernels.layout import GAP, INVERSE_M, MOVE, OTHER_START, STRIKE, WHOLE_STEP
+from sim.kernels.noted import SPEED
 from sim.kernels.others import pushed, touched, which
 from sim.kernels.rows import own_velocity
 from sim.memory import floats, kernel
@@ -24,10 +24,9 @@ def lateness(head):  # type: ignore[no-untyped-def]
     while c != 0:
         t = views.control(c)
         touches, settings = views.touches(t), views.settings(t)
-        for k in range(t[at.CONTACTS]):
-            # What came near within the parts of the last step was stopped there; what overlaps a little is not late.
-            here = t[at.AFTER_PARTS] == 1 and touches[k, GAP] >= -space_slop(t)
-            if touches[k, STRIKE] > 0.0 and not here:
+        # Within the parts of the last step nothing came unseen, and their velocities do not lead back through it.
+        for k in range(0 if t[at.AFTER_PARTS] == 1 else t[at.CONTACTS]):
+            if touches[k, STRIKE] > 0.0:
                 late = max(late, -touches[k, GAP] / touches[k, STRIKE])
         # A step that is shorter than the last one may have moved bodies back.
         late = min(late, max(settings[MOVE], 0.0))
@@ -36,7 +35,7 @@ def lateness(head):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
+def go_back(head, others, rows, pushes, late):  # type: ignore[no-untyped-def]
     """Put a group and what is with it back to where it was when those that strike touched, with the velocities then.
 
     What something holds keeps its velocities: there forces from outside are borne, and give none.
@@ -58,11 +57,12 @@ def go_back(head, others, pushes, late):  # type: ignore[no-untyped-def]
             i = which(others, places[k])
             if touches[k, STRIKE] > 0.0:
                 struck = hit = True
-                if i >= 0:
+                if i >= 0 and rows[i] != 0:
                     b, share = floats(others[i], BODY_WORDS), behind(t, others[i]) - gone
-                    b[VX] = touches[k, LOOSE_START] + share * pushes[i, 0]
-                    b[VX + 1] = touches[k, LOOSE_START + 1] + share * pushes[i, 1]
-                    b[SPIN] = touches[k, LOOSE_START + 2] + share * pushes[i, 2]
+                    at_start = floats(rows[i] + 8 * SPEED, 3)
+                    b[VX] = at_start[0] + share * pushes[i, 0]
+                    b[VX + 1] = at_start[1] + share * pushes[i, 1]
+                    b[SPIN] = at_start[2] + share * pushes[i, 2]
         load_positions(body_at, views.per_body(t, at.BEGUN_AT))
         for i in range(moving):
             move(body_at[i], -late * last[i, 0], -late * last[i, 1], -late * last[i, 2])

@@ -41,9 +41,10 @@ FORCED, CARRYING, HOLDING, ALONE = 32, 33, 34, 35
 # Address of the function table of the joints, behind which lie that of the one that acts for all, and the address of
 # what is called for it at the end of a step.
 OWN_CLASS = 36
-# Contacts that may come within the step, after those that Chipmunk found, see `near`; what Python is asked for them.
+# Contacts that may come within the step, after those that Chipmunk found, see `near`; what Python is asked for them,
+# see `beside` for the last.
 NEAR, ASKED = 37, 38
-GATHER, LOOK, DROP = 1, 2, 3
+GATHER, LOOK, DROP, GATHER_BESIDE = 1, 2, 3, 4
 # Address of what is noted of the space in a step, see `noted`; 0 before it was looked through.
 NOTES = 39
 # What Chipmunk would call at the end of a step for the joint that acts for all; 0 for nothing.
@@ -191,14 +192,14 @@ RESULT_WORDS = 16
 WHERE, HASH, OWNER_A, INDEX_A, BODY_A, OWNER_B, INDEX_B, BODY_B = range(8)
 PLACE_WORDS = 8
 # A contact in `touches`: normal, arms, friction, surface velocity along the tangent, wanted normal velocity, bias,
-# cached impulses, velocities of the other side's point at the step's start (normal, tangent); velocity x, y and spin of
-# the loose body at the step's start, distance of the surfaces, impulses of the step's earlier parts, wanted velocity by
+# cached impulses, velocities of the other side's point at the step's start (normal, tangent), and where neither body is
+# a structure's, that of b's alone; distance of the surfaces, impulses of the step's earlier parts, wanted velocity by
 # restitution alone, speed with which bodies struck each other in this contact; how far the two shapes reach from their
 # bodies' centres, and their restitution, for contacts that come within the step; half the way from Chipmunk's point on
-# a to that on b; the two masses that Chipmunk gave the contact.
+# a to that on b; the two masses that Chipmunk gave the contact; what share of the way from a's point to b's it acts at.
 NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
-CACHED, OTHER_START, LOOSE_START, GAP, EARLIER, BOUNCE, STRIKE = 10, 12, 14, 17, 18, 20, 21
-REACH, RETURN, HALF, MASSES = 22, 24, 25, 27
+CACHED, OTHER_START, B_START, GAP, EARLIER, BOUNCE, STRIKE = 10, 12, 14, 16, 17, 19, 20
+REACH, RETURN, HALF, MASSES, MEETING = 21, 23, 24, 26, 28
 TOUCH_WORDS = 29
 # Distance of surfaces that cannot meet before contacts are found anew; it stays that, however they move [m].
 FAR = math.inf

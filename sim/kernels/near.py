@@ -24,7 +24,6 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blow import WORTH_OF_BLOW, striking_mass
 from sim.kernels.bodies import put
-from sim.kernels.contacts import load_loose
 from sim.kernels.late import behind_in
 from sim.kernels.layout import (
     BLOW,
@@ -51,10 +50,11 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.lengths import LONGEST_PART
-from sim.kernels.noted import IN_PARTS, LOOSE_WORDS
+from sim.kernels.links import index_in
+from sim.kernels.noted import IN_PARTS, LOOSE_WORDS, ask
 from sim.kernels.owners import home, unite
 from sim.kernels.rows import own_velocity
-from sim.memory import call_notice, floats, inlined, kernel
+from sim.memory import floats, inlined, kernel
 
 # How many parts' way ahead contacts are looked for, and the least way, over the reach of a shape.
 _AHEAD, _LEAST = 4.0, 0.01
@@ -67,21 +67,12 @@ def gather(c, t):  # type: ignore[no-untyped-def]
     if not may_be_in_parts(c, t):
         return
     ask(t, at.GATHER)
-    places, touches = views.places(t), views.touches(t)
+    places = views.places(t)
     for k in range(t[at.CONTACTS], t[at.CONTACTS] + t[at.NEAR]):
         place = places[k]
         place[OWNER_B], place[INDEX_B] = home(c, place[BODY_B])
         if place[OWNER_B] != 0:
             unite(c, place[OWNER_B])
-        load_loose(touches[k], floats(place[BODY_B], BODY_WORDS))
-
-
-@kernel
-def ask(t, what):  # type: ignore[no-untyped-def]
-    """Ask Python for something."""
-    t[at.ASKED] = what
-    call_notice(t[at.NOTICE], t[at.KEY])
-    t[at.ASKED] = 0
 
 
 @inlined
@@ -186,10 +177,13 @@ def fall_behind(head, others, pushes, free):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def let_go(head, others, pushes, begun, free, rows):  # type: ignore[no-untyped-def]
-    """Before the last part, put bodies that were near but not touched back to how they would be without the group."""
+def let_go(head, others, mates, pushes, begun, free, rows):  # type: ignore[no-untyped-def]
+    """Before the last part, put bodies that were near but not touched back to how they would be without the group.
+
+    But for its ``mates``, which go with what was touched.
+    """
     for i in range(len(others)):
-        if is_only_near(head, others[i]):
+        if index_in(mates, others[i]) < 0 and is_only_near(head, others[i]):
             b = floats(others[i], BODY_WORDS)
             put(others[i], begun[i, 0], begun[i, 1], begun[i, 2])
             b[VX], b[VX + 1], b[SPIN] = free[i, 0], free[i, 1], free[i, 2]
@@ -226,7 +220,7 @@ def forget_body(t, body):  # type: ignore[no-untyped-def]
     first = t[at.CONTACTS] - t[at.NEAR]
     count = first
     for k in range(first, t[at.CONTACTS]):
-        if places[k, BODY_B] != body:
+        if places[k, BODY_A] != body and places[k, BODY_B] != body:
             for i in range(at.PLACE_WORDS):
                 places[count, i] = places[k, i]
             for i in range(at.TOUCH_WORDS):

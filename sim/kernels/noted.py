@@ -39,7 +39,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels.inertia import mass_of, moment_of
-from sim.memory import floats, inlined, integers, kernel
+from sim.memory import call_notice, floats, inlined, integers, kernel
 
 #: Words of the table: the step that was noted, how many structures have begun it and not ended it, the step after which
 #: bodies were noted, the one in which Python looked through the space; bits of the lengths of this one and of the last;
@@ -56,14 +56,24 @@ NOTES_WORDS = 24
 #: last step; velocities and x, y, angle when this one has moved it.
 #: From there on: the last step in which structures did work on it, and that work [J]; the last step that it went
 #: through in parts, where they began, what it was given on going back to when it touched [J], for how long forces act
-#: in them [s], the way that they do so along, and velocities at the start of the last one.
+#: in them [s], the way that they do so along, and velocities at the start of the last one; what its contacts with other
+#: such bodies, and with held ones, have lost in parts [J]; 1 while contacts beside a group are gathered for it.
 PLACE, PUSH, SPEED, MOVED = 1, 10, 13, 16
-WORKED, WORK, IN_PARTS, BEGUN, GIVEN, SPAN, WAY, LAST, LOOSE_WORDS = 19, 20, 21, 22, 25, 26, 27, 30, 33
+WORKED, WORK, IN_PARTS, BEGUN, GIVEN, SPAN, WAY, LAST = 19, 20, 21, 22, 25, 26, 27, 30
+LOST, MATE, LOOSE_WORDS = 33, 34, 35
 #: Of own constraints: address of their first number, and how many.
 STOCK_WORDS = 2
 #: Of a contact: its address, its normal and tangential impulse, and those that parts of a step began with, if either of
-#: its bodies went through any.
+#: its bodies went through any; no number there, if it went through them itself.
 CONTACT_ROW = 5
+
+
+@kernel
+def ask(t, what):  # type: ignore[no-untyped-def]
+    """Ask Python for something."""
+    t[at.ASKED] = what
+    call_notice(t[at.NOTICE], t[at.KEY])
+    t[at.ASKED] = 0
 
 
 @inlined
@@ -105,6 +115,7 @@ def note_contacts(notes, space):  # type: ignore[no-untyped-def]
             contact, r = floats(where, CONTACT_WORDS), floats(row, CONTACT_ROW)
             integers(row, 1)[0] = where
             r[1], r[2] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_NORMAL_IMPULSE + 1]
+            r[3], r[4] = 0.0, 0.0
             noted += 1
     notes[CONTACTS_COUNT] = noted
 
@@ -158,13 +169,15 @@ def row_of(t, body):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def note_work(t, body, work):  # type: ignore[no-untyped-def]
-    """Note work that a structure does on a loose body [J]."""
+def note_work(t, body, work, lost):  # type: ignore[no-untyped-def]
+    """Note what contacts do on a loose body that are solved with a structure: work, and energy lost beside it [J]."""
     row, stamp = row_of(t, body), integers(t[at.NOTES], NOTES_WORDS)[STAMP]
     if row != 0:
         r = floats(row, LOOSE_WORDS)
-        r[WORK] = work + (r[WORK] if r[WORKED] == stamp else 0.0)
-        r[WORKED] = stamp
+        if r[WORKED] != stamp:
+            r[WORKED], r[WORK], r[LOST] = stamp, 0.0, 0.0
+        r[WORK] += work
+        r[LOST] += lost
 
 
 @kernel
@@ -197,11 +210,20 @@ def note_struck(t, arbiter):  # type: ignore[no-untyped-def]
     notes, w = integers(t[at.NOTES], NOTES_WORDS), integers(arbiter, ARBITER_WORDS)
     for k in range(w[ARBITER_COUNT] & 0xFFFFFFFF):
         where = w[ARBITER_CONTACTS] + CONTACT_BYTES * k
-        for i in range(notes[CONTACTS_COUNT]):
-            row = notes[CONTACTS] + 8 * CONTACT_ROW * i
-            if integers(row, 1)[0] == where:
-                contact, r = floats(where, CONTACT_WORDS), floats(row, CONTACT_ROW)
-                r[3], r[4] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_NORMAL_IMPULSE + 1]
+        row = row_of_contact(notes, where)
+        if row != 0:
+            contact, r = floats(where, CONTACT_WORDS), floats(row, CONTACT_ROW)
+            r[3], r[4] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_NORMAL_IMPULSE + 1]
+
+
+@kernel
+def row_of_contact(notes, where):  # type: ignore[no-untyped-def]
+    """Where the row of the contact at an address lies, or 0."""
+    for i in range(notes[CONTACTS_COUNT]):
+        row = notes[CONTACTS] + 8 * CONTACT_ROW * i
+        if integers(row, 1)[0] == where:
+            return row
+    return 0
 
 
 @kernel

@@ -20,13 +20,12 @@ from sim.chipmunk import (
     BIAS_SPIN,
     BIAS_VX,
     BODY_FULL_WORDS,
-    BODY_SPACE,
     BODY_WORDS,
+    CONSTRAINT_BODY_A,
+    CONSTRAINT_WORDS,
     CONTACT_NORMAL_MASS,
     CONTACT_WORDS,
     MASS_INVERSE,
-    SPACE_GRAVITY,
-    SPACE_WORDS,
     SPIN,
     VX,
     X,
@@ -34,10 +33,10 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import move, put
-from sim.kernels.layout import BODY_A, BODY_B, CACHED, LOOSE_START, OWNER_A, OWNER_B, STEP, WHOLE_RATIO
+from sim.kernels.layout import BODY_A, BODY_B, CACHED, OWNER_A, OWNER_B, WHOLE_RATIO
 from sim.kernels.links import MOST_LINKED, reach
 from sim.kernels.moves import way_to_line
-from sim.kernels.noted import note_struck
+from sim.kernels.noted import SPEED, note_struck
 from sim.kernels.rows import push_loose
 from sim.memory import floats, inlined, integers, kernel
 
@@ -100,9 +99,25 @@ def which(others, place):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def release(head, others):  # type: ignore[no-untyped-def]
-    """Take back what was done to the others so far; returns how all but the group changes their velocities."""
-    pushes, c = np.zeros((len(others), 3)), head
+def mates_of(head, others, links):  # type: ignore[no-untyped-def]
+    """Those of them that a group touches, and that constraints link to these: dynamic ones."""
+    mates, count = np.empty(len(others), np.int64), 0
+    for i in range(len(others)):
+        linked = False
+        for k in range(len(links)):
+            for side in range(2):
+                w = integers(integers(links[k], 1)[0], CONSTRAINT_WORDS)
+                linked = linked or w[CONSTRAINT_BODY_A + side] == others[i]
+        if floats(others[i], BODY_WORDS)[MASS_INVERSE] > 0.0 and (linked or touched(head, others[i], 0)):
+            mates[count] = others[i]
+            count += 1
+    return mates[:count]
+
+
+@kernel
+def take_back(head):  # type: ignore[no-untyped-def]
+    """Take back what Chipmunk has given loose bodies of the impulses that a group's contacts began the step with."""
+    c = head
     while c != 0:
         t = views.control(c)
         places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[WHOLE_RATIO]
@@ -110,30 +125,27 @@ def release(head, others):  # type: ignore[no-untyped-def]
             for row in range(2):
                 push_loose(places[k], touches[k], row, -ratio * touches[k, CACHED + row], VX, SPIN)
         c = t[at.NEXT]
-    c = head
-    while c != 0:
-        t = views.control(c)
-        places, touches = views.places(t), views.touches(t)
-        for k in range(t[at.CONTACTS]):
-            i = which(others, places[k])
-            if i >= 0:
-                b = floats(others[i], BODY_WORDS)
-                for axis in range(3):
-                    at_start = touches[k, LOOSE_START + axis]
-                    word = SPIN if axis == 2 else VX + axis
-                    if b[word] != at_start:
-                        pushes[i, axis] = b[word] - at_start
-                        b[word] = at_start
-        c = t[at.NEXT]
-    h = views.settings(views.control(head))[STEP]
+
+
+@kernel
+def changes(others, rows):  # type: ignore[no-untyped-def]
+    """By how much the others' velocities have changed since the step began."""
+    change = np.zeros((len(others), 3))
     for i in range(len(others)):
-        b, space = floats(others[i], BODY_WORDS), integers(others[i], BODY_FULL_WORDS)[BODY_SPACE]
-        if b[MASS_INVERSE] > 0.0 and space != 0 and not touched(head, others[i], 1):
-            # How fast those were that do not touch is not known; all of them fall.
-            for axis in range(2):
-                pushes[i, axis] = h * floats(space, SPACE_WORDS)[SPACE_GRAVITY + axis]
-                b[VX + axis] -= pushes[i, axis]
-    return pushes
+        if rows[i] != 0:
+            b, at_start = floats(others[i], BODY_WORDS), floats(rows[i] + 8 * SPEED, 3)
+            change[i, 0], change[i, 1] = b[VX] - at_start[0], b[VX + 1] - at_start[1]
+            change[i, 2] = b[SPIN] - at_start[2]
+    return change
+
+
+@kernel
+def set_back(others, rows):  # type: ignore[no-untyped-def]
+    """Have the others the velocities with which the step began."""
+    for i in range(len(others)):
+        if rows[i] != 0:
+            b, at_start = floats(others[i], BODY_WORDS), floats(rows[i] + 8 * SPEED, 3)
+            b[VX], b[VX + 1], b[SPIN] = at_start[0], at_start[1], at_start[2]
 
 
 @kernel

@@ -74,7 +74,7 @@ def share_to_push(head, places, touches, change):  # type: ignore[no-untyped-def
         # A shift of all that strains nothing but by rounding is free.
         lost += ledger[LEDGER_CONTACT] + ledger[LEDGER_NUMERICAL] + _FREE * ledger[LEDGER_KINETIC]
         c = t[at.NEXT]
-    return math.sqrt(max(lost, 0.0) / work) if work > lost else 1.0
+    return math.sqrt(max(lost, 0.0) / work) if work > max(lost, 0.0) else 1.0
 
 
 @kernel

@@ -21,6 +21,7 @@ from sim.kernels.guard import choose_for_part, close_from_below
 from sim.kernels.inertia import add_inertia, mass_of, moment_of, weigh
 from sim.kernels.kinematics import take_up
 from sim.kernels.layout import (
+    B_START,
     BETA,
     BOUNCE,
     EARLIER,
@@ -44,7 +45,7 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.resolved import loss_of_joints, prepare_step
-from sim.kernels.rows import other_velocity
+from sim.kernels.rows import other_velocity, velocity_of_b
 from sim.memory import floats, inlined, kernel
 
 # Of the overlap that a space allows: where less is left to a pressed contact, Chipmunk finds it by rounding or not.
@@ -96,6 +97,7 @@ def begin_part(head, others, pushes):  # type: ignore[no-untyped-def]
             meet(place, touch)
             for row in range(2):
                 touch[OTHER_START + row] = other_velocity(c, place, touch, row)
+                touch[B_START + row] = velocity_of_b(place, touch, row)
             keep = min(slop, max(kept(place, touch, settings[WHOLE_STEP]), _PRESSED * slop))
             slowly = max(min(touch[GAP] + keep, keep), 0.0) / (SETTLE * settings[WHOLE_STEP])
             closing = max(touch[GAP], 0.0) / settings[NEXT_MOVE] + slowly

@@ -31,6 +31,7 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
+from sim.kernels.beside import gather_beside, leave_out_borne, note_starts_beside, take_over_beside
 from sim.kernels.blow import OVER, forget, grow_older, is_over
 from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
 from sim.kernels.guard import choose_for_part
@@ -52,20 +53,24 @@ from sim.kernels.layout import (
     UNEVEN,
     WANTED_BETA,
     WHERE,
+    WHOLE_RATIO,
     WHOLE_STEP,
 )
 from sim.kernels.lengths import LONGEST_PART, averaged_lengths, part_lengths
-from sim.kernels.links import AGREED, MOST_TURNS, links_of, prepare_links, pull_links
+from sim.kernels.links import add_up, hand_back_sums, lift_links, link, links_of, prepare_links
 from sim.kernels.moves import carry_on
 from sim.kernels.near import fall_behind, hand_over, let_go, look, stand_in
 from sim.kernels.newton import restart
 from sim.kernels.noted import BEGUN, note_given, note_last, note_parts, note_way, note_ways, row_of
 from sim.kernels.others import (
+    changes,
+    mates_of,
     others_of,
     put_back,
-    release,
+    set_back,
     show,
     struck_besides,
+    take_back,
 )
 from sim.kernels.part import begin_part, end_part, renew, scale_all
 from sim.kernels.settle import finite, settle_bounces
@@ -75,19 +80,31 @@ from sim.memory import floats, kernel
 @kernel
 def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
     """Take all parts of a step but the last one, and begin that; whether all of them converged."""
+    others, leader = others_of(head), views.control(head)
+    link(head, others)
+    links = links_of(head)
+    mates = mates_of(head, others, links)
+    take_back(head)
+    take_over_beside(head, mates)
+    gather_beside(head, mates)
+    # With what is held there, too.
     others = others_of(head)
     free = np.empty((len(others), 3))
     load_velocities(others, free)
-    pushes = release(head, others)
+    settings, rows = views.settings(leader), note_parts(leader, others)
+    pushes = changes(others, rows)
+    lift_links(links, others, pushes, settings[WHOLE_RATIO])
+    set_back(others, rows)
+    note_starts_beside(head)
     struck = struck_besides(head, others, pushes)
-    fall_behind(head, others, pushes, free)
+    falling = pushes.copy()
+    leave_out_borne(head, others, links, falling)
+    fall_behind(head, others, falling, free)
     begun = np.empty((len(others), 3))
     load_positions(others, begun)
     late = lateness(head)
-    leader = views.control(head)
-    settings, rows = views.settings(leader), note_parts(leader, others)
     note_given(rows, others, -1.0)
-    go_back(head, others, pushes, late)
+    go_back(head, others, rows, falling, late)
     note_given(rows, others, 1.0)
     whole, span = settings[WHOLE_STEP], settings[WHOLE_STEP] + late
     averaged = begin_schemes(head)
@@ -97,7 +114,6 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
     stand_in(head)
     # What another body gave comes once, whatever the length of the parts, so that no momentum is lost.
     add_all(pushes, struck, steps[0] / span)
-    links = links_of(leader, others)
     before, lost, converged = np.empty((len(others), 3)), 0.0, True
     for i in range(len(moves) - 1):
         h = moves[i]
@@ -105,21 +121,18 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
         load_velocities(others, before)
         note_ways(rows, others, 0.5 * steps[i])
         begin_part(head, others, pushes)
-        prepare_links(links, h)
+        prepare_links(links, h, steps[i])
         c = head
         while c != 0:
             restart(views.control(c))
             c = views.control(c)[at.NEXT]
         converged = settle_bounces(head, fresh, touching) and converged
-        for _ in range(MOST_TURNS if len(links) > 0 else 0):
-            if pull_links(links, steps[i]) <= AGREED:
-                break
-            converged = settle_bounces(head, not touching, touching) and converged
+        add_up(links)
         c = head
         while c != 0:
             t = views.control(c)
             if t[at.FAULT] >= 0 or not finite(t):
-                let_go(head, others, pushes, begun, free, rows)
+                let_go(head, others, mates, pushes, begun, free, rows)
                 return converged
             c = t[at.NEXT]
         # In a whole step it would be so many times as much.
@@ -129,10 +142,10 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
     if lost < OVER * whole * settings[BLOW] or is_over(head):
         forget(head)
     look(head)
-    let_go(head, others, pushes, begun, free, rows)
+    let_go(head, others, mates, pushes, begun, free, rows)
     note_last(rows, others, steps[-1])
     begin_part(head, others, pushes)
-    prepare_links(links, moves[-1])
+    prepare_links(links, moves[-1], steps[-1])
     c = head
     while c != 0:
         views.control(c)[at.PARTS], views.control(c)[at.PUSHED_APART] = len(moves), 0
@@ -217,6 +230,7 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
         while c != 0:
             views.control(c)[at.AHEAD] = 0
             c = views.control(c)[at.NEXT]
+        hand_back_sums(links_of(head))
         for i in range(len(others)):
             b = floats(others[i], BODY_WORDS)
             if b[MASS_INVERSE] > 0.0:

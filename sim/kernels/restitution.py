@@ -63,12 +63,13 @@ def creates_energy(head):  # type: ignore[no-untyped-def]
         for k in range(t[at.CONTACTS]):
             place, touch = places[k], touches[k]
             contact = floats(place[WHERE], CONTACT_WORDS)
+            # Below 0: neither body is a structure's.
             other = place[OWNER_A] + place[OWNER_B] - c
             for row in range(2):
                 impulse = contact[CONTACT_TANGENT_IMPULSE] if row == 1 else contact[CONTACT_NORMAL_IMPULSE]
                 impulse += (ratio - 1.0) * touch[CACHED + row]
                 relative = own_velocity(c, place, touch, row, velocity)
-                if other == 0:
+                if other <= 0:
                     theirs = other_velocity(c, place, touch, row)
                     spent += 0.5 * impulse * (theirs - touch[OTHER_START + row])
                     relative += theirs

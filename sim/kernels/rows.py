@@ -30,6 +30,24 @@ def other_velocity(c, place, touch, row):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def velocity_of_b(place, touch, row):  # type: ignore[no-untyped-def]
+    """Velocity of body b's point along a row, at present."""
+    dx, dy, _, mb = direction(touch, row)
+    b = floats(place[BODY_B], BODY_FULL_WORDS)
+    return dx * b[VX] + dy * b[VX + 1] + mb * b[SPIN]
+
+
+@kernel
+def loose_velocity(place, touch, row):  # type: ignore[no-untyped-def]
+    """What loose bodies give to it, at present."""
+    if place[OWNER_A] != 0 and place[OWNER_B] != 0:
+        return 0.0
+    owner = place[OWNER_A] + place[OWNER_B]
+    # No structure has the address -1.
+    return other_velocity(owner if owner != 0 else -1, place, touch, row)
+
+
+@kernel
 def own_velocity(c, place, touch, row, velocity):  # type: ignore[no-untyped-def]
     """What the bodies of structure ``c`` give to it, at its velocities (bodies, 3)."""
     dx, dy, ma, mb = direction(touch, row)

@@ -12,6 +12,7 @@ from sim.kernels.guard import choose_scheme
 from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import take_up
 from sim.kernels.layout import BEFORE, BLOW
+from sim.kernels.links import links_of, note_cached, slacken_bounded
 from sim.kernels.moves import carry, turn_back
 from sim.kernels.near import drop, gather, let_come
 from sim.kernels.newton import restart
@@ -34,7 +35,9 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     """Start of a step: where the joints are, and what their bodies' velocities were."""
     t = views.control(c)
     settings = views.settings(t)
+    lift_springs(t, -1.0)
     note_start(t)
+    note_cached(t)
     for i in range(BEFORE):
         settings[BEFORE + i] = settings[i]
     last_step, last_move = settings[at.STEP], settings[at.NEXT_MOVE]
@@ -50,9 +53,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     t[at.PARTS], t[at.AHEAD], t[at.BROKE] = 1, 0, 0
     settings[at.SPREAD_IMPULSE] *= ratio * t[at.SPREAD]
     t[at.FRESH], t[at.TIED] = 1, 0
-    lift_springs(t, -1.0)
     spin, touching, energy = arrive(t, h)
-    lift_springs(t, 1.0)
     if t[at.FAULT] < 0 and not (math.isfinite(energy) and h > 0.0):
         check_bodies(t)
         if t[at.FAULT] >= 0:
@@ -73,6 +74,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     if touching:
         take_over(c, t)
     gather(c, t)
+    lift_springs(t, 1.0)
     t[at.ALONE] = 1 if not touching and t[at.NEAR] == 0 and has_all_constraints(t) else 0
 
 
@@ -136,6 +138,8 @@ def solve(c):  # type: ignore[no-untyped-def]
             restart(t)
             member = t[at.NEXT]
     converged = settle_bounces(c, fresh, touching) and converged
+    if fresh and head[at.PARTS] > 1:
+        slacken_bounded(links_of(c))
     member = c
     while member != 0:
         t = views.control(member)

@@ -30,6 +30,7 @@ from sim.stock import (
     KIND_AXIS,
     KIND_CLASS,
     KIND_COEFFICIENT,
+    KIND_COUNT,
     KIND_IMPULSE,
     KIND_MASS,
     KIND_RATIO,
@@ -42,8 +43,9 @@ from sim.stock import (
 
 #: A tie's row: its address, its place in Chipmunk's list and the row of its kind (0: none); for each of its two bodies
 #: the control table of the structure that it belongs to (0: none) and its index there; velocities of both when it
-#: was solved last.
-CONSTRAINT, PLACE, KIND, OWNER, INDEX, SEEN, TIE_WORDS = 0, 1, 2, 3, 5, 7, 13
+#: was solved last; its impulse at the step's start, then that of the step's earlier parts; and the control table that
+#: acts for the group through whose parts it goes without being at any of its bodies (0: none), see `links`.
+CONSTRAINT, PLACE, KIND, OWNER, INDEX, SEEN, SUM, LINKED, TIE_WORDS = 0, 1, 2, 3, 5, 7, 13, 15, 16
 
 
 @kernel
@@ -65,9 +67,9 @@ def tie_at(notes, k):  # type: ignore[no-untyped-def]
 
 @kernel
 def lift_springs(t, sign):  # type: ignore[no-untyped-def]
-    """Take the impulses that springs have given to a structure's bodies in this step from them (-1), or put them back.
+    """Take the impulses that springs have given to bodies in this step from these (-1), or put them back (1).
 
-    Also keeps Chipmunk's first iteration from solving its ties. For all but the few structures that have ties, there is
+    Also keeps Chipmunk's first iteration from solving a structure's ties. Where there is no stock constraint, there is
     nothing to do.
     """
     if t[at.NOTES] == 0:
@@ -75,25 +77,47 @@ def lift_springs(t, sign):  # type: ignore[no-untyped-def]
     notes, own = integers(t[at.NOTES], NOTES_WORDS), -1
     for k in range(notes[TIES_COUNT]):
         tie = tie_at(notes, k)
+        if tie[KIND] == 0:
+            continue
         w = integers(tie[CONSTRAINT], CONSTRAINT_WORDS)
         for side in range(2):
-            body = w[CONSTRAINT_BODY_A + side]
-            i = find(t, body)
-            if tie[KIND] == 0 or not 0 <= i < t[at.MOVING]:
-                continue
-            slacken(tie)
-            kind = integers(tie[KIND], KIND_WORDS)
-            if kind[KIND_COEFFICIENT] == 0:
-                continue
-            if own < 0:
-                own = place_of(t[at.LEADER])
-            if tie[PLACE] < own:
-                impulse = sign * floats(tie[CONSTRAINT], kind[KIND_IMPULSE] + 1)[kind[KIND_IMPULSE]]
-                x, y, turn = way_of(tie, side, 0)
-                b = floats(body, BODY_WORDS)
-                b[VX] += impulse * x * b[MASS_INVERSE]
-                b[VX + 1] += impulse * y * b[MASS_INVERSE]
-                b[SPIN] += impulse * turn * b[MOMENT_INVERSE]
+            if 0 <= find(t, w[CONSTRAINT_BODY_A + side]) < t[at.MOVING]:
+                slacken(tie)
+        if not is_spring(tie):
+            continue
+        if own < 0:
+            own = place_of(t[at.LEADER])
+        if tie[PLACE] < own:
+            for side in range(2):
+                b = body_of(tie, side)
+                x, y, turn = given_by(tie, side, impulse_of(tie))
+                b[VX] += sign * x * b[MASS_INVERSE]
+                b[VX + 1] += sign * y * b[MASS_INVERSE]
+                b[SPIN] += sign * turn * b[MOMENT_INVERSE]
+
+
+@kernel
+def is_spring(tie):  # type: ignore[no-untyped-def]
+    """Whether a tie is a spring, with or without a damper: it acts before all others do."""
+    return integers(tie[KIND], KIND_WORDS)[KIND_COEFFICIENT] != 0
+
+
+@kernel
+def impulse_of(tie):  # type: ignore[no-untyped-def]
+    """A tie's impulse in the step so far, a number or two."""
+    kind = integers(tie[KIND], KIND_WORDS)
+    first = kind[KIND_IMPULSE]
+    return floats(tie[CONSTRAINT], first + kind[KIND_COUNT])[first:]
+
+
+@kernel
+def given_by(tie, side, impulse):  # type: ignore[no-untyped-def]
+    """What an impulse of a tie gives to its body a (``side`` 0) or b: momentum x, y and moment."""
+    px, py, moment = 0.0, 0.0, 0.0
+    for row in range(len(impulse)):
+        x, y, turn = way_of(tie, side, row)
+        px, py, moment = px + impulse[row] * x, py + impulse[row] * y, moment + impulse[row] * turn
+    return px, py, moment
 
 
 @kernel
@@ -157,6 +181,7 @@ def bind(c, t):  # type: ignore[no-untyped-def]
     for k in range(notes[TIES_COUNT]):
         tie = tie_at(notes, k)
         w = integers(tie[CONSTRAINT], CONSTRAINT_WORDS)
+        tie[LINKED] = 0
         for side in range(2):
             tie[OWNER + side], tie[INDEX + side] = home(c, w[CONSTRAINT_BODY_A + side])
         one, other = tie[OWNER], tie[OWNER + 1]

@@ -78,7 +78,9 @@ def pre_step(digest: str) -> Callable[..., None]:
         if c == 0:
             return  # it has no structure: Python could not make one, and will say so
         t = views.control(c)
-        if t[at.LEADER] == 0:
+        if t[at.LEADER] != 0:
+            t[at.CALLED] += 1
+        else:
             if not is_known(t, constraint):
                 # Python looks through the space, and may give the joint to another structure.
                 t[at.NOTES] = 0
@@ -87,7 +89,7 @@ def pre_step(digest: str) -> Callable[..., None]:
                 if c == 0:
                     return
                 t = views.control(c)
-            t[at.LEADER] = constraint
+            t[at.LEADER], t[at.CALLED] = constraint, 1
             own, tables = integers(constraint, CONTROL), integers(t[at.OWN_CLASS], AFTER_STEP + 1)
             t[at.THEIR_POST_SOLVE] = own[POST_SOLVE] if own[POST_SOLVE] != tables[AFTER_STEP] else 0
             own[CONSTRAINT_CLASS], own[POST_SOLVE] = t[at.OWN_CLASS] + CLASS_BYTES, tables[AFTER_STEP]

@@ -21,11 +21,14 @@ def leave_out(t, constraint):  # type: ignore[no-untyped-def]
         return
     notes[BY] = constraint
     kept, beyond = 0, False
-    for k in range(len(listed)):
-        if not beyond or integers(listed[k], 1)[CONSTRAINT_CLASS] != t[at.OWN_CLASS]:
-            listed[kept] = listed[k]
-            kept += 1
-        beyond = beyond or listed[k] == constraint
+    if t[at.CALLED] == len(listed):
+        kept = 1  # all are of one structure
+    else:
+        for k in range(len(listed)):
+            if not beyond or integers(listed[k], 1)[CONSTRAINT_CLASS] != t[at.OWN_CLASS]:
+                listed[kept] = listed[k]
+                kept += 1
+            beyond = beyond or listed[k] == constraint
     list_of_constraints(constraint)[LIST_COUNT] -= len(listed) - kept
 
 

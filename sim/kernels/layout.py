@@ -53,9 +53,11 @@ THEIR_POST_SOLVE = 40
 SEEN, NEW = 41, 42
 # Whether any lower block of the matrix is not one joint's alone: another's too, or filled in.
 SHARED = 43
+# How many of its joints Chipmunk has come to in this step.
+CALLED = 44
 # In `ACTIVE`: the joint holds, and what it stores is not known yet, see `strained`.
 UNKNOWN = 2
-_FIRST_ADDRESS = 44
+_FIRST_ADDRESS = 45
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -42,12 +43,14 @@ class JointWatch:
         if constraints != self._constraints:
             self._constraints = constraints
             self._present = [constraint for constraint in constraints if isinstance(constraint, DuctileJoint)]
-            self._meet()
+            self._meet(self._present)
         current = {joint.structure for joint in self._present}
         # Also of joints that have just gone: one may have been made and broken within this step.
         before = current if gone is self._present else {joint.structure for joint in gone}
         for structure in before | current:
             if structure is not None and structure not in self._rows:
+                # One may have come and broken since the last step.
+                self._meet(structure.joints)
                 self._rows[structure] = np.array([self._row[joint] for joint in structure.joints])
         # A structure that is no more is read a last time, for the step in which it broke; what has passed on to
         # another is then read from that.
@@ -58,9 +61,9 @@ class JointWatch:
         for structure in self._rows:
             self._read(structure)
 
-    def _meet(self) -> None:
+    def _meet(self, joints: Iterable[DuctileJoint]) -> None:
         """Give joints that are new a row."""
-        for joint in self._present:
+        for joint in joints:
             if joint not in self._row:
                 self._row[joint] = len(self.joints)
                 self.joints.append(joint)

@@ -13,8 +13,9 @@ from sim.laws import LAWS, ElasticPlastic, FibreSection, Law, RigidPlastic, sect
 from sim.model import Model
 
 #: Shear stiffness of an Euler–Bernoulli member, which has none of its own to give way, over EI / L²: shear adds 3e-5
-#: to the deflection of a cantilever and 5e-4 to that of a beam fixed at both ends.
-_SHEAR_RIGID = 1e5
+#: to the deflection of a cantilever and 5e-4 to that of a beam fixed at both ends. Of one that is shorter than three
+#: depths it is this much over EA: a stub as stiff as the rest of its kind would leave the solver no digits.
+_SHEAR_RIGID, _OVER_AXIAL = 1e5, 1e3
 
 
 class MemberLaws:
@@ -77,7 +78,7 @@ class MemberLaws:
 
     def _shear(self, name: str, c: Capacity) -> float:
         if self._scene.members[name].theory == "euler-bernoulli":
-            return _SHEAR_RIGID * c.EI / self._scene.axis(name)[2] ** 2
+            return min(_SHEAR_RIGID * c.EI / self._scene.axis(name)[2] ** 2, _OVER_AXIAL * c.EA)
         return c.GA_s
 
     def _fibre(self, member: Member, fibres: int) -> FibreSection:

@@ -18,6 +18,9 @@ from sim.shapes import add_box
 
 #: Share of a member's end piece that belongs to the body of a node where several members meet.
 _NODE_SHARE = 0.1
+#: Least radius of gyration of a piece, over its section's: that of one as long as half a rectangle's depth is half of
+#: it. The slabs that a stub is cut into, without any to speak of, would leave the solver no digits.
+_SLAB = 0.25
 
 
 @dataclass(frozen=True)
@@ -167,9 +170,10 @@ class Pieces:
         """Mass [kg] and moment of inertia [kg m²] of ``length`` of a member about its own centre."""
         member = self.scene.members[name]
         mass = member.material.density * member.section.area * length
-        moment = mass * length**2 / 12.0
+        square = member.section.second_moment_of_area / member.section.area
+        moment = mass * max(length**2 / 12.0, _SLAB**2 * square)
         if member.theory == "timoshenko":
-            moment += member.material.density * member.section.second_moment_of_area * length
+            moment += mass * square
         return mass, moment
 
     def _add_body(self, mass: float, moment: float, x: float, y: float, angle: float) -> pymunk.Body:

@@ -27,6 +27,9 @@ from sim.step_back import SolverError
 
 # Where inertia bears too much, a push takes longer, up to so many times.
 _LONGEST = 8.0
+# By how much of the largest load a push in more time may differ from the one before it. A member that buckles takes
+# time for it, in which inertia bears little; where two pushes differ by more, the longest time is taken.
+_ALIKE = 0.01
 # Share of a way over which it is seen what inertia bears, short enough for a strut that gives way at once.
 _SEEN = 0.02
 # A push of which more steps than this share found no solution is none.
@@ -162,10 +165,18 @@ def push_over(
     longest = _LONGEST * PACE.duration
     if push.inertia > pace.most_inertia and pace.duration < longest:
         longer = min(longest, 1.1 * pace.duration * math.sqrt(push.inertia / pace.most_inertia))
-        # Where joints all along a member bear Q_max, that may find no solution: then the first one stands, as it says.
+        # Where joints all along a member bear Q_max, that may find no solution: then the one before stands, as it says.
         with suppress(SolverError):
-            push = _push(scene, model, way, watch, second_order, longer)
+            before, push = push, _push(scene, model, way, watch, second_order, longer)
+            if longer < longest and _differ(before, push) > _ALIKE:
+                push = _push(scene, model, way, watch, second_order, longest)
     return push
+
+
+def _differ(first: Push, second: Push) -> float:
+    """Largest difference of the loads of two pushes through the same distances, over the largest load."""
+    loads = second.load_at_distances
+    return float(np.abs(loads - first.load_at_distances).max() / np.abs(loads).max())
 
 
 def _push(

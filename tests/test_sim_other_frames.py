@@ -100,6 +100,19 @@ def pulled() -> str:
     return frame(nodes, {"A-B": of("HEB 200")}, along("B", "[0, -1]", 0.25), (pull,))
 
 
+def on_brackets() -> str:
+    """A strut of 4 m, loaded through brackets that are a third as long as they are deep, up to and past its limit."""
+    nodes: dict[str, Place] = {
+        "A": (0.0, 0.0, "pinned"),
+        "B": (0.1, 0.0, "free"),
+        "C": (0.1, 2.0, "free"),
+        "D": (0.1, 4.0, "free"),
+        "E": (0.0, 4.0, "roller-y"),
+    }
+    members = {"A-B": of("HEB 300"), "B-C": of("IPE 200"), "C-D": of("IPE 200"), "D-E": of("HEB 300")}
+    return frame(nodes, members, along("E", "[0, -1]", 0.05))
+
+
 CASES: dict[str, str] = {
     "tee": cantilever(of("T 150x150x10x15 mm"), 1.5, 0.12, "small"),
     "polygon": cantilever(of("polygon 0,0 120,0 120,20 70,20 70,160 50,160 50,20 0,20 mm"), 2.0, 0.15, "small"),
@@ -109,6 +122,7 @@ CASES: dict[str, str] = {
     "beam to and fro": beam_to_and_fro(),
     "lean-to": lean_to(),
     "pulled": pulled(),
+    "on brackets": on_brackets(),
 }
 
 

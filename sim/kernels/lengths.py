@@ -64,7 +64,7 @@ def note_shortest(head, struck):  # type: ignore[no-untyped-def]
         settings = views.settings(t)
         settings[SHORTEST] = shortest
         if struck:
-            settings[UNDAMPED] = 0.0
+            settings[UNDAMPED] = AFTER_IMPULSES
         c = t[at.NEXT]
 
 

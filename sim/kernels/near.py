@@ -43,6 +43,7 @@ from sim.kernels.layout import (
     OWNER_B,
     PUSH,
     REACH,
+    RETURN,
     SUDDEN,
     TRAVEL,
     WHERE,
@@ -67,12 +68,14 @@ def gather(c, t):  # type: ignore[no-untyped-def]
     if not may_be_in_parts(c, t):
         return
     ask(t, at.GATHER)
-    places = views.places(t)
+    places, touches = views.places(t), views.touches(t)
     for k in range(t[at.CONTACTS], t[at.CONTACTS] + t[at.NEAR]):
         place = places[k]
         place[OWNER_B], place[INDEX_B] = home(c, place[BODY_B])
         if place[OWNER_B] != 0:
             unite(c, place[OWNER_B])
+        if touches[k, RETURN] > 0.0:
+            t[at.ELASTIC] = 1
 
 
 @inlined

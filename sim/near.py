@@ -51,7 +51,6 @@ class Surroundings:
         if asked == at.GATHER:
             control = structure.tables.control
             index = {body: i for i, body in enumerate(structure.bodies[: int(control[at.MOVING])])}
-            self._impulses = []
             self._add(structure, list(_pairs(structure, index)), index)
         elif asked == at.GATHER_BESIDE:
             self._add(structure, list(_pairs_beside(structure, notes)), {})
@@ -64,6 +63,9 @@ class Surroundings:
     def _add(self, structure: Structure, pairs: list[Pair], index: Mapping[pymunk.Body, int]) -> None:
         """Add pairs to those that are listed, and make two contacts of each that are not seen yet."""
         tables = structure.tables
+        if tables.control[at.NEAR] == 0:
+            # All of an earlier step may have been forgotten within it.
+            self._pairs, self._copies, self._impulses = [], {}, []
         self._pairs += [(own, other) for own, other, _, _ in pairs]
         first, count = int(tables.control[at.CONTACTS]), _POINTS * len(pairs)
         if first + count > tables.control[at.ROOM]:

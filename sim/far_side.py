@@ -17,7 +17,6 @@ import shapely
 from sim.chipmunk import (
     ARBITER_COUNT,
     ARBITER_NORMAL,
-    ARBITER_RESTITUTION,
     ARBITER_SHAPE_A,
     ARBITER_SHAPE_B,
     ARBITER_WORDS,
@@ -34,6 +33,7 @@ from sim.chipmunk import (
 from sim.contact_graph import arbiters_of
 from sim.first_touch import moved, rounding
 
+_RESTITUTION = 0
 _MOST_ADVANCES = 60
 
 
@@ -85,7 +85,7 @@ def _turn(arbiter: int, space: pymunk.Space, step: float) -> None:
     contact[CONTACT_R1 : CONTACT_R1 + 2], contact[CONTACT_R2 : CONTACT_R2 + 2] = arm_a, arm_b
     f = words(arbiter, ARBITER_WORDS)
     f[ARBITER_NORMAL : ARBITER_NORMAL + 2] = normal
-    contact[CONTACT_BOUNCE] = (velocities[1] - velocities[0]).dot(normal) * f[ARBITER_RESTITUTION]
+    contact[CONTACT_BOUNCE] = (velocities[1] - velocities[0]).dot(normal) * f[_RESTITUTION]
     # All of it at once, where the step is not taken in parts: the next one would find the wrong side again.
     contact[CONTACT_BIAS] = -min(0.0, depth) / step
 

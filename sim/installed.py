@@ -165,9 +165,8 @@ def _kind_fits(kind: Kind) -> bool:
 
 def _contacts_fit() -> bool:
     """Whether arbiters and contacts, which pymunk itself describes, are as they should be."""
-    arbiter = {"e": at.ARBITER_RESTITUTION, "u": at.ARBITER_FRICTION, "surface_vr": at.ARBITER_SURFACE}
-    arbiter |= {"a": at.ARBITER_SHAPE_A, "b": at.ARBITER_SHAPE_B}
-    arbiter |= {"body_a": at.ARBITER_BODY_A, "body_b": at.ARBITER_BODY_B}
+    arbiter = {"e": 0, "u": at.ARBITER_FRICTION, "surface_vr": at.ARBITER_SURFACE, "a": at.ARBITER_SHAPE_A}
+    arbiter |= {"b": at.ARBITER_SHAPE_B, "body_a": at.ARBITER_BODY_A, "body_b": at.ARBITER_BODY_B}
     arbiter |= {"thread_a": at.ARBITER_NEXT_A, "thread_b": at.ARBITER_NEXT_B, "count": at.ARBITER_COUNT}
     arbiter |= {"contacts": at.ARBITER_CONTACTS, "n": at.ARBITER_NORMAL, "state": at.ARBITER_STATE}
     contact = {"r1": at.CONTACT_R1, "r2": at.CONTACT_R2, "nMass": at.CONTACT_NORMAL_MASS}

@@ -144,9 +144,6 @@ def _go_on(new: Structure, leading: Structure, olds: Collection[Structure]) -> N
     own = tables[at.SETTINGS][_OWN]
     tables[at.SETTINGS][:] = leading.tables[at.SETTINGS]
     tables[at.SETTINGS][_OWN] = own
-    if len(olds) > 1 or not set(leading.joints) <= set(new.joints):
-        # A jump, by which an undamped blow would leave stiff joints strained.
-        tables[at.SETTINGS][at.UNDAMPED] = 0.0
     tables.control[[at.PARTS, at.CONTACTS]] = control[[at.PARTS, at.CONTACTS]]
     for word in (at.SHIFTED, at.FLOWING):
         tables.control[word] = max(old.tables.control[word] for old in olds)

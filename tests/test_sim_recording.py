@@ -64,7 +64,7 @@ def test_a_resting_cantilever_shows_the_forces_of_statics() -> None:
 
 
 def test_anchors_of_a_joint_stay_together(recording: Recording) -> None:
-    """Until one breaks, its place on both bodies is the same but for what it gives: 10 mm while a blow rings."""
+    """Until it breaks, a joint's place on its two bodies is the same but for what it gives, here less than 3 mm."""
     for j, joint in enumerate(recording.joints):
         places = []
         for body, anchor in zip(joint.bodies, joint.anchors, strict=True):
@@ -73,7 +73,7 @@ def test_anchors_of_a_joint_stay_together(recording: Recording) -> None:
             places.append(np.stack([x + c * anchor[0] - s * anchor[1], y + s * anchor[0] + c * anchor[1]], axis=-1))
         gap = np.hypot(*(places[0] - places[1]).T)
         whole = ~recording.broken[:, j]
-        assert gap[whole].max() < 1e-2
+        assert gap[whole].max() < 3e-3
 
 
 def test_a_broken_joint_stays_broken_and_bears_nothing(recording: Recording) -> None:
@@ -178,9 +178,8 @@ def test_the_ledger_closes_while_joints_break(recording: Recording) -> None:
     assert np.all(np.diff(energy["plastic"]) >= -1e-9 * largest)
     when = int(recording.broken[:, 0].argmax())
     # The root yields at M_max until it has turned by its limit, 0.12; what it stored is lost with it. It may turn on by
-    # some of what it does in a part of a step; what N and Q stored is lost, too. The joint beside it yields as well: by
-    # 0.0165 to 0.0192, in steps of 1/240 to 1/16000 s.
+    # some of what it does in a part of a step; what N and Q stored is lost, too.
     moment, stiffness = recording.joints[0].maxima[2], capacity(SECTION, STEEL).EI / (LENGTH / PIECES)
-    assert energy["plastic"][when] == pytest.approx((0.12 + 0.018) * moment + 0.5 * moment**2 / stiffness, rel=0.02)
+    assert energy["plastic"][when] == pytest.approx(0.12 * moment + 0.5 * moment**2 / stiffness, rel=5e-3)
     kinetic = 0.5 * STEEL.density * SECTION.area * LENGTH / PIECES * (recording.velocity[-1, 1:-1] ** 2).sum()
     assert energy["kinetic"][-1] == pytest.approx(kinetic, rel=0.2, abs=1e-3)

@@ -14,10 +14,6 @@ is over:
   a 60th of a second. What a part would lose by implicit Euler is known, and a step n times
   as long loses n times that in its time.
 
-A contact sets waves going that parts by implicit Euler do not resolve: a seventh of what a light, fast ball brings
-would be lost in them. So the parts are of the average-acceleration rule, as after impulses (see `sudden`), unless
-anything elastic is about.
-
 So the largest and the lasting deflection are found at any step; what swings behind them is damped as ever. Nothing is
 spent on this where nothing is hit. A structure that constraints of Chipmunk's own hold is left to whole steps.
 """
@@ -127,7 +123,6 @@ def takes_parts(head):  # type: ignore[no-untyped-def]
             c = t[at.NEXT]
     else:
         grow_older(head, kinetic, of_head[BEFORE + NEXT_MOVE])
-    damp_bounces(head)
     if lasting == 0.0 or reach(head, np.empty(MOST_LINKED, np.int64)) < 0:
         forget(head)
         return False
@@ -136,23 +131,6 @@ def takes_parts(head):  # type: ignore[no-untyped-def]
     if of_head[UNDAMPED] == 0.0 or is_over(head):
         forget(head)
     return False
-
-
-@kernel
-def damp_bounces(head):  # type: ignore[no-untyped-def]
-    """Have a group damped that anything elastic touches, or may.
-
-    With stiff joints a bounce would otherwise give more energy than there is.
-    """
-    elastic, c = False, head
-    while c != 0:
-        t = views.control(c)
-        elastic, c = elastic or t[at.ELASTIC] == 1, t[at.NEXT]
-    c = head
-    while elastic and c != 0:
-        t = views.control(c)
-        views.settings(t)[UNDAMPED] = 0.0
-        c = t[at.NEXT]
 
 
 @kernel

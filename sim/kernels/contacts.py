@@ -20,7 +20,6 @@ from sim.chipmunk import (
     ARBITER_NEXT_A,
     ARBITER_NEXT_B,
     ARBITER_NORMAL,
-    ARBITER_RESTITUTION,
     ARBITER_STATE,
     ARBITER_SURFACE,
     ARBITER_WORDS,
@@ -119,8 +118,6 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 load_contact(arbiter, where, p, touch)
                 p[OWNER_A], p[INDEX_A] = (c, i) if is_a else (owner, j)
                 p[OWNER_B], p[INDEX_B] = (owner, j) if is_a else (c, i)
-                if floats(arbiter, ARBITER_WORDS)[ARBITER_RESTITUTION] > 0.0:
-                    t[at.ELASTIC] = 1
                 spare = min(slop, kept(p, touch, h)) + touch[GAP]
                 if touch[WANTED] == 0.0 and spare > 0.0:
                     touch[WANTED] = -SETTLE * spare / h

@@ -71,7 +71,7 @@ def choose_scheme(t, turn):  # type: ignore[no-untyped-def]
     beta, delta = settings[WANTED_BETA], settings[WANTED_DELTA]
     if beta == 0.0:
         short = t[at.PARTS] > 1 or (settings[BLOW] > 0.0 and settings[WHOLE_STEP] <= LONGEST_PART)
-        if settings[UNDAMPED] > 0.0 and short and turn <= _TURN and may_swing(t):
+        if settings[UNDAMPED] > 0.0 and short and t[at.CONTACTS] == 0 and turn <= _TURN and may_swing(t):
             # What is set going at once begins with a jump, by which joints that yield would be left strained.
             beta, delta = _AVERAGE, 1.0 - settings[UNDAMPED] if settings[BLOW_AGE] > 0.0 else 0.0
     else:
@@ -84,16 +84,9 @@ def choose_scheme(t, turn):  # type: ignore[no-untyped-def]
 
 @kernel
 def may_swing(t):  # type: ignore[no-untyped-def]
-    """Whether what came suddenly is to be followed without damping.
-
-    After forces, once what is stiff has settled, while nothing touches the structure.
-    """
+    """Whether what came suddenly is to be followed without damping; after forces, once what is stiff has settled."""
     settings = views.settings(t)
-    if settings[UNDAMPED] == AFTER_IMPULSES:
-        return True
-    if t[at.CONTACTS] != 0:
-        return False
-    if settings[BETA] != 0.0 or settings[BEFORE + BETA] != 0.0:
+    if settings[UNDAMPED] == AFTER_IMPULSES or settings[BETA] != 0.0 or settings[BEFORE + BETA] != 0.0:
         return True
     return settings[BLOW_AGE] > 0.0 and is_slow(t)
 

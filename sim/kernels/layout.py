@@ -55,11 +55,9 @@ SEEN, NEW = 41, 42
 SHARED = 43
 # How many of its joints Chipmunk has come to in this step.
 CALLED = 44
-# Whether anything that touches the structure in this step, or may, is elastic.
-ELASTIC = 45
 # In `ACTIVE`: the joint holds, and what it stores is not known yet, see `strained`.
 UNKNOWN = 2
-_FIRST_ADDRESS = 46
+_FIRST_ADDRESS = 45
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

@@ -64,7 +64,7 @@ def note_shortest(head, struck):  # type: ignore[no-untyped-def]
         settings = views.settings(t)
         settings[SHORTEST] = shortest
         if struck:
-            settings[UNDAMPED] = AFTER_IMPULSES
+            settings[UNDAMPED] = 0.0
         c = t[at.NEXT]
 
 

@@ -43,7 +43,6 @@ from sim.kernels.layout import (
     OWNER_B,
     PUSH,
     REACH,
-    RETURN,
     SUDDEN,
     TRAVEL,
     WHERE,
@@ -68,14 +67,12 @@ def gather(c, t):  # type: ignore[no-untyped-def]
     if not may_be_in_parts(c, t):
         return
     ask(t, at.GATHER)
-    places, touches = views.places(t), views.touches(t)
+    places = views.places(t)
     for k in range(t[at.CONTACTS], t[at.CONTACTS] + t[at.NEAR]):
         place = places[k]
         place[OWNER_B], place[INDEX_B] = home(c, place[BODY_B])
         if place[OWNER_B] != 0:
             unite(c, place[OWNER_B])
-        if touches[k, RETURN] > 0.0:
-            t[at.ELASTIC] = 1
 
 
 @inlined

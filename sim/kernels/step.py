@@ -70,7 +70,7 @@ def begin(c, h):  # type: ignore[no-untyped-def]
         t[at.NEW] = 0
         book_strained(t)
     settings[at.SUDDEN] = sudden_energy(t, last_step)
-    t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY], t[at.ELASTIC] = 0, 0, 0, 0
+    t[at.PUSHED_APART], t[at.CONTACTS], t[at.ASTRAY] = 0, 0, 0
     if touching:
         take_over(c, t)
     gather(c, t)

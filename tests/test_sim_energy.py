@@ -218,3 +218,17 @@ def test_damping_takes_no_more_than_there_was(stiffness: float) -> None:
         assert found.external == pytest.approx(100.0, rel=1e-9)
         assert 0.0 <= found.viscous <= 100.0
         assert found.numerical >= 0.0
+
+
+def test_a_longer_step_takes_back_all_of_what_a_contact_gave_in_a_shorter_one() -> None:
+    """Chipmunk begins a step with the last one's impulses times the ratio of the steps; no ball may keep them."""
+    case = chain(6, gravity=0.0, shapes=True)
+    case.structure.whole_steps_only = True
+    ball = pymunk.Body(10.0, 10.0 * 0.02**2)
+    ball.position, ball.velocity = (0.21, 0.075), (0.0, -1.0)
+    case.space.add(ball, pymunk.Circle(ball, 0.02))
+    while ball.velocity.y < -0.99:
+        case.space.step(1e-3)
+    for _ in range(4):
+        case.space.step(1 / 30)
+        assert ball.kinetic_energy <= 5.0

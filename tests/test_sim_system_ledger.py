@@ -60,7 +60,8 @@ def test_bodies_that_collide_keep_what_they_had_but_for_what_is_booked_as_lost(r
 def test_weights_work_along_the_way_to_the_middle_of_a_move() -> None:
     """Also when the step changes, and for bodies in and out of structures alike; no step is taken in parts.
 
-    To a millionth: bodies of structures are carried on to where a step of another length had them.
+    To two hundred-thousandths: bodies of structures are carried on to where a step of another length had them, and what
+    overlap is taken out in such a step strains joints by as much as that is off.
     """
     case = chain(6, law(strength=0.02), shapes=True)
     scatter(case, 3, 0.3)
@@ -71,7 +72,7 @@ def test_weights_work_along_the_way_to_the_middle_of_a_move() -> None:
         case.space.step(dt)
         ledger.note()
         work -= sum(9.81 * dt * body.mass * 0.5 * (v + body.velocity.y) for body, v in before)
-    assert ledger.energy.external == pytest.approx(started + work, rel=1e-6)
+    assert ledger.energy.external == pytest.approx(started + work, rel=2e-5)
     assert abs(ledger.energy.gap) <= 1e-12 * largest(ledger.energy)
 
 

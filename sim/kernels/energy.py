@@ -45,7 +45,6 @@ from sim.kernels.layout import (
     BETA,
     BODY_A,
     BODY_B,
-    CACHED,
     INERTIA_I,
     INERTIA_M,
     LEDGER_CONTACT,
@@ -60,7 +59,6 @@ from sim.kernels.layout import (
     SPREAD_IMPULSE,
     STEP,
     WHERE,
-    WHOLE_RATIO,
 )
 from sim.kernels.noted import note_work, row_of
 from sim.kernels.rows import other_velocity, own_velocity, velocity_of_b
@@ -176,16 +174,14 @@ def work_at(t, velocity):  # type: ignore[no-untyped-def]
 @inlined
 def contacts(c, t, start, end):  # type: ignore[no-untyped-def]
     """The contacts that a structure solved as its own: work that other bodies did on it, and how much arrived."""
-    places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[WHOLE_RATIO]
+    places, touches = views.places(t), views.touches(t)
     given, arrived = 0.0, 0.0
     for k in range(t[at.CONTACTS]):
         place, touch = places[k], touches[k]
         contact, loose, of_b = floats(place[WHERE], CONTACT_WORDS), 0.0, 0.0
         neither = place[OWNER_A] == 0 and place[OWNER_B] == 0
         for row in range(2):
-            total = contact[CONTACT_TANGENT_IMPULSE] if row == 1 else contact[CONTACT_NORMAL_IMPULSE]
-            # Chipmunk scales what it applies of the cached impulse by the ratio of the steps, but not what it keeps.
-            impulse = total + (ratio - 1.0) * touch[CACHED + row]
+            impulse = contact[CONTACT_TANGENT_IMPULSE] if row == 1 else contact[CONTACT_NORMAL_IMPULSE]
             own0, own1 = own_velocity(c, place, touch, row, start), own_velocity(c, place, touch, row, end)
             loose += 0.5 * impulse * (touch[OTHER_START + row] + other_velocity(c, place, touch, row))
             arrived += 0.5 * impulse * (own0 + own1)

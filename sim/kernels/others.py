@@ -33,7 +33,7 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import move, put
-from sim.kernels.layout import BODY_A, BODY_B, CACHED, OWNER_A, OWNER_B, WHOLE_RATIO
+from sim.kernels.layout import BODY_A, BODY_B, CACHED, OWNER_A, OWNER_B
 from sim.kernels.links import MOST_LINKED, reach
 from sim.kernels.moves import way_to_line
 from sim.kernels.noted import SPEED, note_struck
@@ -120,10 +120,10 @@ def take_back(head):  # type: ignore[no-untyped-def]
     c = head
     while c != 0:
         t = views.control(c)
-        places, touches, ratio = views.places(t), views.touches(t), views.settings(t)[WHOLE_RATIO]
+        places, touches = views.places(t), views.touches(t)
         for k in range(t[at.CONTACTS]):
             for row in range(2):
-                push_loose(places[k], touches[k], row, -ratio * touches[k, CACHED + row], VX, SPIN)
+                push_loose(places[k], touches[k], row, -touches[k, CACHED + row], VX, SPIN)
         c = t[at.NEXT]
 
 

@@ -17,7 +17,6 @@ from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.kinematics import rates
 from sim.kernels.layout import (
     BETA,
-    CACHED,
     NEXT_MOVE,
     OTHER_START,
     OWNER_A,
@@ -26,7 +25,6 @@ from sim.kernels.layout import (
     TANGENT,
     WANTED,
     WHERE,
-    WHOLE_RATIO,
 )
 from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, kernel
@@ -59,7 +57,6 @@ def creates_energy(head):  # type: ignore[no-untyped-def]
         t = views.control(c)
         spent += spent_by(t)
         velocity, places, touches = views.per_body(t, at.VELOCITY), views.places(t), views.touches(t)
-        ratio = views.settings(t)[WHOLE_RATIO]
         for k in range(t[at.CONTACTS]):
             place, touch = places[k], touches[k]
             contact = floats(place[WHERE], CONTACT_WORDS)
@@ -67,7 +64,6 @@ def creates_energy(head):  # type: ignore[no-untyped-def]
             other = place[OWNER_A] + place[OWNER_B] - c
             for row in range(2):
                 impulse = contact[CONTACT_TANGENT_IMPULSE] if row == 1 else contact[CONTACT_NORMAL_IMPULSE]
-                impulse += (ratio - 1.0) * touch[CACHED + row]
                 relative = own_velocity(c, place, touch, row, velocity)
                 if other <= 0:
                     theirs = other_velocity(c, place, touch, row)

@@ -4,16 +4,17 @@ import math
 
 import numpy as np
 
+from sim.chipmunk import CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE, CONTACT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.commit import weaken
 from sim.kernels.complement import NOT_FINITE, gather_contacts, touch
-from sim.kernels.layout import CACHED, INERTIA_I, INERTIA_M
+from sim.kernels.layout import CACHED, INERTIA_I, INERTIA_M, WHERE
 from sim.kernels.newton import iterate
 from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
 from sim.kernels.rows import sum_up
 from sim.kernels.tie_impulses import solve_ties
-from sim.memory import kernel
+from sim.memory import floats, kernel
 
 _MOST_ROUNDS = 40
 _SETTLED = 1e-6
@@ -69,12 +70,19 @@ def settle_bounces(c, fresh, touching):  # type: ignore[no-untyped-def]
 
 @kernel
 def book_cached(c):  # type: ignore[no-untyped-def]
-    """Chipmunk has applied the contacts' cached impulses to the bodies: they did not come from outside."""
+    """Chipmunk has applied the contacts' cached impulses to the bodies: they did not come from outside.
+
+    It scales what it applies by the ratio of the steps, but not what it keeps; all that was applied may be taken back.
+    """
+    member = c
+    while member != 0:
+        t = views.control(member)
+        scale_cached(t, views.settings(t)[at.WHOLE_RATIO])
+        member = t[at.NEXT]
     places, touches = gather_contacts(c)
     amounts = np.empty(2 * len(places))
-    ratio = views.settings(views.control(c))[at.WHOLE_RATIO]
     for r in range(len(amounts)):
-        amounts[r] = ratio * touches[r >> 1, CACHED + (r & 1)]
+        amounts[r] = touches[r >> 1, CACHED + (r & 1)]
     member = c
     while member != 0:
         t = views.control(member)
@@ -86,6 +94,17 @@ def book_cached(c):  # type: ignore[no-untyped-def]
                 struck[i, axis] += solution[i, axis]
                 external[i, axis] -= solution[i, axis]
         member = t[at.NEXT]
+
+
+@kernel
+def scale_cached(t, ratio):  # type: ignore[no-untyped-def]
+    """Let contacts begin a step with what Chipmunk has applied of their impulses."""
+    places, touches = views.places(t), views.touches(t)
+    for k in range(t[at.CONTACTS] if ratio != 1.0 else 0):
+        contact = floats(places[k, WHERE], CONTACT_WORDS)
+        for row in range(2):
+            touches[k, CACHED + row] *= ratio
+            contact[CONTACT_TANGENT_IMPULSE if row == 1 else CONTACT_NORMAL_IMPULSE] *= ratio
 
 
 @kernel

@@ -74,3 +74,21 @@ def test_a_blow_is_told_with_all_the_momentum_that_it_passes_on(elasticity: floa
     for impulse, lost in notes:
         # Met away from its middle, a piece turns, too, and is lighter.
         assert loss * impulse**2 <= lost * (1.0 + 1e-9) < 4.0 * loss * impulse**2
+
+
+def test_energies_are_finite_where_a_step_is_taken_whole_though_more_is_near() -> None:
+    """A pivot holds the bar, which no part of a step is taken with; other balls are about to hit it."""
+    space = pymunk.Space()
+    bodies = bar(space, clamped=False)
+    space.add(pymunk.PivotJoint(space.static_body, bodies[0], bodies[0].position))
+    notes = told(space, 3)
+    for k in range(8):
+        ball = piece(space, 10.0, 1.0, 0.1 + 0.25 * k, 0.2 + 0.03 * k)
+        ball.velocity = (0.0, -3.0)
+        shape = pymunk.Circle(ball, 0.1)
+        shape.collision_type = 3
+        space.add(shape)
+    for _ in range(20):
+        space.step(1 / 60)
+    assert len(notes) >= 8
+    assert all(0.0 <= lost < math.inf for _, lost in notes)

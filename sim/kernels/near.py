@@ -240,9 +240,19 @@ def hand_over(t):  # type: ignore[no-untyped-def]
             contact[CONTACT_TANGENT_IMPULSE] += own[CONTACT_TANGENT_IMPULSE]
 
 
+@kernel
+def drop_all(head):  # type: ignore[no-untyped-def]
+    """Forget what is near a group whose step is taken whole after all."""
+    c = head
+    while c != 0:
+        t = views.control(c)
+        drop(t)
+        c = t[at.NEXT]
+
+
 @inlined
 def drop(t):  # type: ignore[no-untyped-def]
-    """End of a step: Chipmunk itself finds what still touches at the start of the next one."""
+    """Forget what is near: Chipmunk itself finds what still touches at the start of the next step."""
     if t[at.NEAR] > 0:
         t[at.NEAR] = 0
         ask(t, at.DROP)

@@ -14,7 +14,7 @@ from sim.kernels.kinematics import take_up
 from sim.kernels.layout import BEFORE, BLOW
 from sim.kernels.links import links_of, note_cached, slacken_bounded
 from sim.kernels.moves import carry, turn_back
-from sim.kernels.near import drop, gather, let_come
+from sim.kernels.near import drop, drop_all, gather, let_come
 from sim.kernels.newton import restart
 from sim.kernels.noted import note_end, note_start
 from sim.kernels.others import even_out, note_pushes
@@ -129,8 +129,10 @@ def solve(c):  # type: ignore[no-untyped-def]
             touching = let_come(c) or touching
             keep(c)
             converged = take_parts(c, fresh, touching)
-        elif views.settings(head)[BLOW] > 0.0:
-            begin_whole(c)
+        else:
+            drop_all(c)
+            if views.settings(head)[BLOW] > 0.0:
+                begin_whole(c)
         member = c
         while member != 0:
             t = views.control(member)

@@ -103,9 +103,8 @@ def add(bodies, count, body):  # type: ignore[no-untyped-def]
     """Add a dynamic body to a list, once; returns how many there are, or -1 if there is no room."""
     if floats(body, BODY_WORDS)[MASS_INVERSE] == 0.0 or count < 0:
         return count
-    for i in range(count):
-        if bodies[i] == body:
-            return count
+    if index_in(bodies[:count], body) >= 0:
+        return count
     if count == len(bodies):
         return -1
     bodies[count] = body
@@ -243,9 +242,8 @@ def add_up(links):  # type: ignore[no-untyped-def]
     """Add the impulses of a part to those of the earlier ones."""
     for k in range(len(links)):
         tie = integers(links[k], TIE_WORDS)
-        impulse, total = impulse_of(tie), sum_of_parts(tie)
-        for i in range(len(impulse)):
-            total[i] += impulse[i]
+        impulse = impulse_of(tie)
+        sum_of_parts(tie)[: len(impulse)] += impulse
 
 
 @kernel
@@ -253,9 +251,8 @@ def hand_back_sums(links):  # type: ignore[no-untyped-def]
     """Have constraints keep the impulse of all parts of the step: pymunk shows it, and the next step begins with it."""
     for k in range(len(links)):
         tie = integers(links[k], TIE_WORDS)
-        impulse, total = impulse_of(tie), sum_of_parts(tie)
-        for i in range(len(impulse)):
-            impulse[i] += total[i]
+        impulse = impulse_of(tie)
+        impulse += sum_of_parts(tie)[: len(impulse)]
 
 
 @kernel

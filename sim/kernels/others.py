@@ -34,7 +34,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import move, put
 from sim.kernels.layout import BODY_A, BODY_B, CACHED, OWNER_A, OWNER_B
-from sim.kernels.links import MOST_LINKED, reach
+from sim.kernels.links import MOST_LINKED, index_in, reach
 from sim.kernels.moves import way_to_line
 from sim.kernels.noted import SPEED, note_struck
 from sim.kernels.rows import push_loose
@@ -76,9 +76,8 @@ def note(found, count, body):  # type: ignore[no-untyped-def]
     b = floats(body, BODY_WORDS)
     if b[MASS_INVERSE] == 0.0 and b[VX] == 0.0 and b[VX + 1] == 0.0 and b[SPIN] == 0.0:
         return count
-    for i in range(count):
-        if found[i] == body:
-            return count
+    if index_in(found[:count], body) >= 0:
+        return count
     found[count] = body
     return count + 1
 

@@ -1,8 +1,12 @@
 """The rows of a contact: its unit impulses along normal and tangent, and what they and bodies do to each other."""
 
+import math
+
 from sim.chipmunk import BODY_FULL_WORDS, MASS_INVERSE, MOMENT_INVERSE, SPIN, VX
+from sim.kernels import layout as at
+from sim.kernels import views
 from sim.kernels.bare import clear
-from sim.kernels.layout import ARM_A, ARM_B, BODY_A, BODY_B, INDEX_A, INDEX_B, NORMAL, OWNER_A, OWNER_B
+from sim.kernels.layout import ARM_A, ARM_B, BODY_A, BODY_B, INDEX_A, INDEX_B, NORMAL, OWNER_A, OWNER_B, SOLVED
 from sim.memory import floats, kernel
 
 
@@ -99,3 +103,23 @@ def sum_up(c, places, touches, amounts, out):  # type: ignore[no-untyped-def]
     clear(out)
     for r in range(len(amounts)):
         add_row(c, places[r >> 1], touches[r >> 1], r, amounts[r], out)
+
+
+@kernel
+def note_solved(t, converged):  # type: ignore[no-untyped-def]
+    """Note what loose bodies give to the velocities of a structure's contacts, now that these are solved."""
+    places, touches = views.places(t), views.touches(t)
+    for k in range(t[at.CONTACTS]):
+        for row in range(2):
+            touches[k, SOLVED + row] = loose_velocity(places[k], touches[k], row) if converged else math.nan
+
+
+@kernel
+def are_solved(t):  # type: ignore[no-untyped-def]
+    """Whether they give the same as then; not where no solution was found."""
+    places, touches = views.places(t), views.touches(t)
+    for k in range(t[at.CONTACTS]):
+        for row in range(2):
+            if touches[k, SOLVED + row] != loose_velocity(places[k], touches[k], row):
+                return False
+    return True

@@ -23,6 +23,7 @@ from sim.kernels.part import conclude
 from sim.kernels.parts import begin_whole, close_step, take_parts
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.resolved import prepare_step
+from sim.kernels.rows import are_solved, note_solved
 from sim.kernels.settle import book_cached, finite, settle_bounces
 from sim.kernels.strained import book_strained
 from sim.kernels.sudden import sudden_energy
@@ -106,7 +107,7 @@ def solve(c):  # type: ignore[no-untyped-def]
         bind(c, head)
     if head[at.HEAD] != 0 and head[at.HEAD] != c:
         return  # another one acts for this structure
-    fresh, touching, differs, tied = head[at.FRESH] == 1, False, False, False
+    fresh, touching, differs, tied, solved = head[at.FRESH] == 1, False, False, False, True
     member = c
     while member != 0:
         t = views.control(member)
@@ -114,13 +115,13 @@ def solve(c):  # type: ignore[no-untyped-def]
             return
         touching, tied = touching or t[at.CONTACTS] > 0, tied or t[at.TIED] > 0
         changed, energy = take_in(t)
-        differs = changed or differs
+        differs, solved = changed or differs, solved and (fresh or are_solved(t))
         if fresh and not (math.isfinite(energy) or finite(t)):
             refuse(c)
             return
         member = t[at.NEXT]
-    if not (differs or fresh or touching or (tied and have_moved(c))):
-        return  # nothing else has touched the structure since it was solved
+    if not (differs or fresh or (touching and not (solved and len(links_of(c)) == 0)) or (tied and have_moved(c))):
+        return  # nothing has touched the structure, or what it touches, since it was solved
     converged = True
     if fresh:
         if touching:
@@ -157,6 +158,7 @@ def solve(c):  # type: ignore[no-untyped-def]
     while member != 0:
         t = views.control(member)
         write(t)
+        note_solved(t, converged)
         member = t[at.NEXT]
     if tied:
         note_seen(c)

@@ -41,6 +41,7 @@ from sim.chipmunk import (
     CONTACT_WORDS,
     FIRST,
     MASS_INVERSE,
+    SPACE_GRAVITY,
     SPACE_SLOP,
     SPACE_WORDS,
     SPIN,
@@ -78,10 +79,11 @@ from sim.kernels.owners import home, unite
 from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, integers, kernel
 
-# Surfaces that turn come apart by a distance that grows with the square of the step, and a contact that was lost would
-# be found again a step of free motion later. So a pressed contact keeps this many times that distance of overlap,
-# within what the space allows, and comes this share of the way to it in a step.
-_KEPT = 8.0
+# Surfaces that turn come apart by a distance that grows with the square of the step, and those of a structure that
+# bends, or that something slides on little by little. A contact that was lost would be found again a step of free
+# motion later. So a pressed contact keeps this many times that distance of overlap, and this share of what it would
+# fall in that step, within what the space allows, and comes this share of the way to it in a step.
+_KEPT, _OF_FALL = 8.0, 0.05
 SETTLE = 0.5
 
 
@@ -94,7 +96,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
     moving, body_at, looking, astray = t[at.MOVING], views.body_at(t), t[at.ASTRAY] == 0, 0
     places, touches = views.places(t), views.touches(t)
     count, missed, h = 0, 0, views.settings(t)[at.STEP]
-    slop = space_slop(t) if moving > 0 else 0.0
+    slop, fall = allowed(t, h) if moving > 0 else (0.0, 0.0)
     for i in range(moving):
         own = body_at[i]
         arbiter = integers(own, BODY_FULL_WORDS)[ARBITERS]
@@ -118,7 +120,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                 load_contact(arbiter, where, p, touch)
                 p[OWNER_A], p[INDEX_A] = (c, i) if is_a else (owner, j)
                 p[OWNER_B], p[INDEX_B] = (owner, j) if is_a else (c, i)
-                spare = min(slop, kept(p, touch, h)) + touch[GAP]
+                spare = min(slop, kept(p, touch, h, fall)) + touch[GAP]
                 if touch[WANTED] == 0.0 and spare > 0.0:
                     touch[WANTED] = -SETTLE * spare / h
                 if w[ARBITER_STATE] & 0xFFFFFFFF == FIRST:
@@ -169,9 +171,10 @@ def seize(contact, touch):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def space_slop(t):  # type: ignore[no-untyped-def]
-    """By how much shapes may overlap in the space of a structure that is in a step [m]."""
-    return floats(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE], SPACE_WORDS)[SPACE_SLOP]
+def allowed(t, h):  # type: ignore[no-untyped-def]
+    """By how much shapes may overlap in the space of a structure that is in a step, and what falls freely in it [m]."""
+    space = floats(integers(t[at.LEADER], CONSTRAINT_WORDS)[CONSTRAINT_SPACE], SPACE_WORDS)
+    return space[SPACE_SLOP], h * h * math.hypot(space[SPACE_GRAVITY], space[SPACE_GRAVITY + 1])
 
 
 @kernel
@@ -223,11 +226,14 @@ def meet(place, touch):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def kept(place, touch, h):  # type: ignore[no-untyped-def]
-    """Overlap that a pressed contact keeps: some times ½ r (ω h)² of both bodies, by which turning parts them [m]."""
+def kept(place, touch, h, fall):  # type: ignore[no-untyped-def]
+    """Overlap that a pressed contact keeps: some times ½ r (ω h)² of both bodies, by which turning parts them [m].
+
+    And a share of the ``fall`` of a step.
+    """
     a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
     ra, rb = math.hypot(touch[ARM_A], touch[ARM_A + 1]), math.hypot(touch[ARM_B], touch[ARM_B + 1])
-    return 0.5 * _KEPT * (ra * (a[SPIN] * h) ** 2 + rb * (b[SPIN] * h) ** 2)
+    return 0.5 * _KEPT * (ra * (a[SPIN] * h) ** 2 + rb * (b[SPIN] * h) ** 2) + _OF_FALL * fall
 
 
 @kernel

@@ -15,7 +15,7 @@ from sim.kernels.bare import clear
 from sim.kernels.bodies import load_velocities, move, write
 from sim.kernels.commit import commit
 from sim.kernels.complement import relative
-from sim.kernels.contacts import SETTLE, kept, meet, space_slop
+from sim.kernels.contacts import SETTLE, allowed, kept, meet
 from sim.kernels.energy import close
 from sim.kernels.guard import choose_for_part, close_from_below
 from sim.kernels.inertia import add_inertia, mass_of, moment_of, weigh
@@ -82,7 +82,7 @@ def begin_part(head, others, pushes):  # type: ignore[no-untyped-def]
         t = views.control(c)
         external, velocity, weight = views.per_body(t, at.EXTERNAL), views.per_body(t, at.VELOCITY), views.weight(t)
         places, touches, settings = views.places(t), views.touches(t), views.settings(t)
-        slop = space_slop(t)
+        slop, fall = allowed(t, settings[WHOLE_STEP])
         for i in range(t[at.MOVING]):
             velocity[i, 0] += external[i, 0] * weight[i, INVERSE_M]
             velocity[i, 1] += external[i, 1] * weight[i, INVERSE_M]
@@ -98,7 +98,7 @@ def begin_part(head, others, pushes):  # type: ignore[no-untyped-def]
             for row in range(2):
                 touch[OTHER_START + row] = other_velocity(c, place, touch, row)
                 touch[B_START + row] = velocity_of_b(place, touch, row)
-            keep = min(slop, max(kept(place, touch, settings[WHOLE_STEP]), _PRESSED * slop))
+            keep = min(slop, max(kept(place, touch, settings[WHOLE_STEP], fall), _PRESSED * slop))
             slowly = max(min(touch[GAP] + keep, keep), 0.0) / (SETTLE * settings[WHOLE_STEP])
             closing = max(touch[GAP], 0.0) / settings[NEXT_MOVE] + slowly
             if touch[RETURN] > 0.0 and touch[GAP] > 0.0:

@@ -15,12 +15,9 @@ import math
 import numpy as np
 
 from sim.chipmunk import (
-    BODY_FULL_WORDS,
     CONTACT_NORMAL_IMPULSE,
     CONTACT_TANGENT_IMPULSE,
     CONTACT_WORDS,
-    MASS_INVERSE,
-    MOMENT_INVERSE,
     SPIN,
     VX,
 )
@@ -29,8 +26,6 @@ from sim.kernels import views
 from sim.kernels.bare import clear
 from sim.kernels.blocks import factorise_matrix, solve
 from sim.kernels.layout import (
-    BODY_A,
-    BODY_B,
     FAR,
     FRICTION,
     GAP,
@@ -48,7 +43,7 @@ from sim.kernels.layout import (
 from sim.kernels.links import links_of, pull
 from sim.kernels.overlap import MOST_SWEEPS, push_apart
 from sim.kernels.residual import descend, reach_of
-from sim.kernels.rows import add_row, direction, loose_velocity, own_velocity, push_loose, sum_up
+from sim.kernels.rows import add_row, loose_velocity, move_loose, own_velocity, push_loose, sum_up
 from sim.memory import floats, kernel
 
 #: What `touch` gives when an impulse is not a number: nothing was changed then.
@@ -157,22 +152,7 @@ def operator(places, touches):  # type: ignore[no-untyped-def]
             solve(t, first, solution)
             for r in range(rows):
                 g[r, k] += own_velocity(c, places[r >> 1], touches[r >> 1], r, solution)
-        for side in range(2):
-            if (two if side == 1 else one) != 0:
-                continue
-            loose = place[BODY_A] if side == 0 else place[BODY_B]
-            b = floats(loose, BODY_FULL_WORDS)
-            dx, dy, ma, mb = direction(touch, k)
-            sign, moment = (-1.0, ma) if side == 0 else (1.0, mb)
-            for r in range(rows):
-                p = places[r >> 1]
-                ex, ey, na, nb = direction(touches[r >> 1], r)
-                theirs, arm = 0.0, 0.0
-                if p[OWNER_A] == 0 and p[BODY_A] == loose:
-                    theirs, arm = -1.0, na
-                elif p[OWNER_B] == 0 and p[BODY_B] == loose:
-                    theirs, arm = 1.0, nb
-                g[r, k] += sign * theirs * ((dx * ex + dy * ey) * b[MASS_INVERSE] + moment * arm * b[MOMENT_INVERSE])
+        move_loose(places, touches, k, g[:, k])
     return g
 
 

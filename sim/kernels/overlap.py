@@ -1,14 +1,28 @@
-"""Taking out overlap, through the structures: pseudo-velocities that move the bodies once and carry no momentum."""
+"""Taking out overlap, through the structures: pseudo-velocities that move the bodies once and carry no momentum.
+
+A structure that something holds does not give way to a loose body: to push them apart would strain its joints, and
+what lies on it in a pile would bend it for good with energy that nothing has given.
+"""
 
 import math
 
-from sim.chipmunk import BIAS_SPIN, BIAS_VX, BODY_FULL_WORDS
+from sim.chipmunk import BIAS_SPIN, BIAS_VX, BODY_FULL_WORDS, BODY_WORDS, MASS_INVERSE
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import solve
 from sim.kernels.kinematics import rates
-from sim.kernels.layout import LEDGER_CONTACT, LEDGER_KINETIC, LEDGER_NUMERICAL, PUSH, WHOLE_STEP
-from sim.kernels.rows import push_loose, sum_up
+from sim.kernels.layout import (
+    BODY_A,
+    BODY_B,
+    LEDGER_CONTACT,
+    LEDGER_KINETIC,
+    LEDGER_NUMERICAL,
+    OWNER_A,
+    OWNER_B,
+    PUSH,
+    WHOLE_STEP,
+)
+from sim.kernels.rows import move_loose, push_loose, sum_up
 from sim.memory import floats, kernel
 
 #: Of projected Gauss–Seidel, here and in `complement`.
@@ -27,6 +41,10 @@ def push_apart(head, places, touches, g, v, change):  # type: ignore[no-untyped-
         any_overlap = any_overlap or touches[k, PUSH] > 0.0
     if not any_overlap:
         return
+    for k in range(len(places)):
+        if stands(places[k]):
+            g[:, 2 * k] = 0.0
+            move_loose(places, touches, 2 * k, g[:, 2 * k])
     for _ in range(MOST_SWEEPS):
         moved, size = 0.0, 0.0
         for r in range(0, len(v), 2):
@@ -42,9 +60,14 @@ def push_apart(head, places, touches, g, v, change):  # type: ignore[no-untyped-
                     v[k] += g[k, r] * step
         if moved <= 1e-6 * size:
             break
-    share = share_to_push(head, places, touches, change)
+    through = change.copy()
+    for k in range(len(places)):
+        if stands(places[k]):
+            push_loose(places[k], touches[k], 2 * k, change[2 * k], BIAS_VX, BIAS_SPIN)
+            through[2 * k] = 0.0
+    share = share_to_push(head, places, touches, through)
     for r in range(0, len(v), 2):
-        push_loose(places[r >> 1], touches[r >> 1], r, share * change[r], BIAS_VX, BIAS_SPIN)
+        push_loose(places[r >> 1], touches[r >> 1], r, share * through[r], BIAS_VX, BIAS_SPIN)
     c = head
     while c != 0:
         t = views.control(c)
@@ -55,6 +78,16 @@ def push_apart(head, places, touches, g, v, change):  # type: ignore[no-untyped-
             b[BIAS_VX + 1] += share * solution[i, 1]
             b[BIAS_SPIN] += share * solution[i, 2]
         c = t[at.NEXT]
+
+
+@kernel
+def stands(place):  # type: ignore[no-untyped-def]
+    """Whether a contact is one of a structure that something holds with a loose body, which moves out of it alone."""
+    owner, loose = (place[OWNER_A], place[BODY_B]) if place[OWNER_A] != 0 else (place[OWNER_B], place[BODY_A])
+    one_side = place[OWNER_A] == 0 or place[OWNER_B] == 0
+    return (
+        one_side and owner != 0 and views.control(owner)[at.FREE] == 0 and floats(loose, BODY_WORDS)[MASS_INVERSE] > 0.0
+    )
 
 
 @kernel

@@ -98,6 +98,29 @@ def push_loose(place, touch, row, amount, offset, spin):  # type: ignore[no-unty
 
 
 @kernel
+def move_loose(places, touches, row, velocities):  # type: ignore[no-untyped-def]
+    """Add to the ``velocities`` of all rows what a row's unit impulse gives them by moving its loose bodies."""
+    place = places[row >> 1]
+    dx, dy, ma, mb = direction(touches[row >> 1], row)
+    for side in range(2):
+        if place[OWNER_A if side == 0 else OWNER_B] != 0:
+            continue
+        loose = place[BODY_A] if side == 0 else place[BODY_B]
+        b = floats(loose, BODY_FULL_WORDS)
+        sign, moment = (-1.0, ma) if side == 0 else (1.0, mb)
+        for r in range(len(velocities)):
+            p = places[r >> 1]
+            ex, ey, na, nb = direction(touches[r >> 1], r)
+            theirs, arm = 0.0, 0.0
+            if p[OWNER_A] == 0 and p[BODY_A] == loose:
+                theirs, arm = -1.0, na
+            elif p[OWNER_B] == 0 and p[BODY_B] == loose:
+                theirs, arm = 1.0, nb
+            turned = moment * arm * b[MOMENT_INVERSE]
+            velocities[r] += sign * theirs * ((dx * ex + dy * ey) * b[MASS_INVERSE] + turned)
+
+
+@kernel
 def sum_up(c, places, touches, amounts, out):  # type: ignore[no-untyped-def]
     """J_cᵀ times impulses of the rows, on the bodies of structure ``c``."""
     clear(out)

@@ -1,0 +1,27 @@
+"""What lies on a structure in a pile."""
+
+import pymunk
+import pytest
+from piles import DEPTH, beam, box
+
+
+def test_what_overlaps_a_held_structure_moves_out_of_it_alone() -> None:
+    """A box that is put into a beam, by 20 mm, bends it by nothing; a ball has struck that before, and lost energy."""
+    space = pymunk.Space()
+    space.collision_slop = 1e-3
+    structure = beam(space, 20)[0]
+    ball = pymunk.Body(100.0, 10.0)
+    ball.position, ball.velocity = (5.0, 0.5 * DEPTH + 0.2), (0.0, -3.0)
+    space.add(ball, pymunk.Circle(ball, 0.2))
+    for _ in range(60):
+        space.step(1 / 60)
+    assert structure.structure is not None
+    assert structure.structure.energy.contact + structure.structure.energy.numerical > 100.0
+    space.remove(ball, *ball.shapes)
+    before = structure.structure.energy
+    wedge = box(space, 2.5, -0.5 * DEPTH - 0.5 * 0.4 + 0.02, 0.4)
+    for _ in range(60):
+        space.step(1 / 60)
+    after = structure.structure.energy
+    assert after.elastic + after.plastic < before.elastic + before.plastic + 1.0
+    assert wedge.position.y == pytest.approx(-0.5 * DEPTH - 0.5 * 0.4, abs=2e-3)

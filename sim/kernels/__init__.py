@@ -7,8 +7,10 @@
 | ``kinematics``, ``inertia`` | deformations of the joints and their gradient; masses, implicit geometric stiffness |
 | ``blocks`` | the matrix: assembly, L D Lᵀ by 3 × 3 blocks, substitution |
 | ``residual``, ``newton`` | impulses of the joints: Newton's method with a line search |
+| ``approach``, ``admissible`` | joints made soft where that gets nowhere; none bears more than it can |
 | ``spread`` | a load pattern under displacement control |
 | ``contacts``, ``complement``, ``rows`` | contacts of the structures' bodies, solved through the structures |
+| ``active_rows`` | contacts where sweeps, or turns between contacts and joints, would take forever |
 | ``ties``, ``tie_impulses`` | Chipmunk's own constraints at the structures' bodies, solved through the structures |
 | ``restitution``, ``overlap`` | no more bounce than there is energy for; taking out overlap |
 | ``owners``, ``others`` | which structures are solved together, and the bodies that move with them |

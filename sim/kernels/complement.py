@@ -23,6 +23,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.active_rows import relax, solve_directly
 from sim.kernels.bare import clear
 from sim.kernels.blocks import factorise_matrix, solve
 from sim.kernels.layout import (
@@ -50,18 +51,27 @@ from sim.memory import floats, kernel
 NOT_FINITE = -1.0
 # Constraints of loose bodies agree once a sweep changes so much of what one did at the most, as energies, or of all.
 _AGREED, _STILL = 1e-10, 1e-20
+# How many times sweeps are tried, and rows solved directly in between.
+_MOST_DIRECT = 4
+
+
+@kernel
+def count_contacts(head):  # type: ignore[no-untyped-def]
+    """How many contacts a group of structures has whose surfaces are not too far apart to meet."""
+    count, c = 0, head
+    while c != 0:
+        t = views.control(c)
+        touches = views.touches(t)
+        for k in range(t[at.CONTACTS]):
+            count += touches[k, GAP] < FAR
+        c = t[at.NEXT]
+    return count
 
 
 @kernel
 def gather_contacts(head):  # type: ignore[no-untyped-def]
     """Contacts of all structures of a group, but those whose surfaces are too far apart to meet."""
-    count, c = 0, head
-    while c != 0:
-        t = views.control(c)
-        own_touches = views.touches(t)
-        for k in range(t[at.CONTACTS]):
-            count += own_touches[k, GAP] < FAR
-        c = t[at.NEXT]
+    count = count_contacts(head)
     places, touches = np.empty((count, at.PLACE_WORDS), np.int64), np.empty((count, at.TOUCH_WORDS))
     count, c = 0, head
     while c != 0:
@@ -80,8 +90,11 @@ def gather_contacts(head):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def touch(head):  # type: ignore[no-untyped-def]
-    """Solve a group's contacts as it now stands; returns by how much their impulses changed, or `NOT_FINITE`."""
+def touch(head, last):  # type: ignore[no-untyped-def]
+    """Solve a group's contacts as it now stands; returns by how much their impulses changed, or `NOT_FINITE`.
+
+    With what is in ``last``, see `relax`, they may be changed by less than that.
+    """
     places, touches = gather_contacts(head)
     count = len(places)
     factorise_group(head)
@@ -92,6 +105,8 @@ def touch(head):  # type: ignore[no-untyped-def]
     largest = complement(head, places, touches, g, v, change)
     if not math.isfinite(largest):
         return NOT_FINITE
+    if len(last) > 0:
+        relax(places, touches, change, last)
     c = head
     while c != 0:
         t = views.control(c)
@@ -158,13 +173,31 @@ def operator(places, touches):  # type: ignore[no-untyped-def]
 
 @kernel
 def complement(head, places, touches, g, v, change):  # type: ignore[no-untyped-def]
-    """Projected Gauss–Seidel on G; changes the accumulated impulses and loose bodies' velocities.
+    """Solve for the accumulated impulses on G; changes them and loose bodies' velocities.
 
-    Constraints between loose bodies have their turn in every sweep, see `links`. Returns the largest change of an
-    impulse over the largest one; where that is not finite, loose bodies may be anywhere.
+    By projected Gauss–Seidel, and what that leaves is found directly where it would take forever, as on two points of a
+    body that is light beside the structure. Constraints between loose bodies have their turn in every sweep, see
+    `links`. Returns the largest change of an impulse over the largest one; where that is not finite, loose bodies may
+    be anywhere.
     """
-    rows, links, most = len(v), links_of(head), 0.0
-    h, pushed = views.settings(views.control(head))[STEP], np.zeros(len(v))
+    rows, links, pushed = len(v), links_of(head), np.zeros(len(v))
+    for _ in range(_MOST_DIRECT):
+        if sweep(head, links, places, touches, g, v, change, pushed) or len(links) > 0:
+            break
+        solve_directly(places, touches, g, v, change)
+    give(places, touches, change, pushed)
+    largest, size = 0.0, 0.0
+    for r in range(rows):
+        size = max(size, floats(places[r >> 1, WHERE], CONTACT_WORDS)[CONTACT_NORMAL_IMPULSE])
+        # Added, and not compared, so that no number that is not finite slips through.
+        largest = max(largest, abs(change[r])) + 0.0 * change[r]
+    return largest / size if size > 0.0 else largest
+
+
+@kernel
+def sweep(head, links, places, touches, g, v, change, pushed):  # type: ignore[no-untyped-def]
+    """Projected Gauss–Seidel on G, from the accumulated impulses on; whether they agree in the end."""
+    rows, h, most = len(v), views.settings(views.control(head))[STEP], 0.0
     for _ in range(MOST_SWEEPS):
         moved, size, agreed = 0.0, 0.0, True
         for r in range(rows):
@@ -194,14 +227,8 @@ def complement(head, places, touches, g, v, change):  # type: ignore[no-untyped-
             most = max(most, of_change)
             agreed = of_change <= _AGREED * most + _STILL * of_all
         if moved <= 1e-10 * size and agreed:
-            break
-    give(places, touches, change, pushed)
-    largest, size = 0.0, 0.0
-    for r in range(rows):
-        size = max(size, floats(places[r >> 1, WHERE], CONTACT_WORDS)[CONTACT_NORMAL_IMPULSE])
-        # Added, and not compared, so that no number that is not finite slips through.
-        largest = max(largest, abs(change[r])) + 0.0 * change[r]
-    return largest / size if size > 0.0 else largest
+            return True
+    return False
 
 
 @kernel

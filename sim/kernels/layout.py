@@ -138,7 +138,7 @@ NEXT_MOVE = 27
 SHORTEST = 28
 # Whether steps, or parts of them, have been of more than one length, see `kinematics.prepare`.
 UNEVEN = 29
-# By what share of their stiffness joints resist while Newton's method feels its way, see `newton`; 1 otherwise.
+# By what share of their stiffness joints resist while the way to a solution is felt, see `approach`; 1 otherwise.
 SOFT = 30
 # The most that outer forces had done in any step by the average-acceleration rule [J], see `guard`.
 LARGEST = 31

@@ -13,15 +13,13 @@ dissipation, and kinetic distance to V̂), so Newton's method with a line search
 
 Bodies are only ever changed by pairs of impulses ± Jᵀ Δλ, so momentum is kept to rounding, converged or not.
 β = 0, δ = 1 is implicit Euler; β = ¼, δ = 0 the average-acceleration rule. Viscous forces c q̇ at the step's end are
-part of s, with c / h(β + δ) in D.
+part of s, with c / h(β + δ) in D. `approach` has the steps in turn, and what is done where they get nowhere.
 """
-
-import math
 
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import factorise_matrix, solve
-from sim.kernels.layout import STEP, TANGENT
+from sim.kernels.layout import TANGENT
 from sim.kernels.residual import (
     advance,
     apply,
@@ -29,20 +27,13 @@ from sim.kernels.residual import (
     descent,
     gather,
     motion_scale,
-    reach_of,
     respond,
     respond_along_lines,
-    respond_stiffer,
     strip_tangents,
 )
 from sim.kernels.spread import advance_spread, along, spread_factor, spread_residual, spread_step
 from sim.memory import inlined, kernel
 
-MOST_NEWTON_STEPS = 200
-#: After so many steps, begin anew with joints that are soft, and go on to stiffer ones.
-_PATIENCE = 15
-# Resistance of joints that are soft, over their bodies' inertia, and by how much they are made stiffer at a time.
-_SOFT, _STIFFER = 10.0, 30.0
 MOST_SEARCHES = 40
 _KINK = 1e-3
 _MOST_REFINEMENTS = 5
@@ -147,85 +138,6 @@ def predict_elastic(t, factor, enough):  # type: ignore[no-untyped-def]
             break
         before = rest
     return error, size, spring, motion
-
-
-@inlined
-def iterate(t, predicting):  # type: ignore[no-untyped-def]
-    """Newton's method from the present velocities; returns steps taken, whether it converged, and the residual.
-
-    The first solve of a step is ``predicting``. The residual is finite if impulses and velocities are.
-    """
-    settings = views.settings(t)
-    factor, tolerance, rounding = settings[STEP] * reach_of(t), settings[at.TOLERANCE], settings[at.ROUNDING]
-    steps, begun = 0, 0
-    if predicting:
-        error, size, spring, motion = predict(t, factor, tolerance)
-        steps = 1
-    else:
-        error, size, spring = measure(t)
-        motion = motion_scale(t)
-    converged = error <= tolerance * (size + motion) + rounding
-    best = error
-    while not converged and steps < MOST_NEWTON_STEPS and math.isfinite(error):
-        steps += 1
-        if steps == _PATIENCE:
-            error, size, spring = resist(t, softness(t, factor))
-            gone, begun, best = 0.0, steps, error
-        else:
-            factorise_matrix(t, factor)
-            start, change = newton_step(t, factor, spring)
-            error, size, spring, gone = search(t, factor, start, change, tolerance, motion, steps >= _PATIENCE)
-        converged = error <= tolerance * (size + motion) + rounding
-        # Below this it is rounding that remains, and another step would not take it away; one that was cut short says
-        # so only when many have been taken.
-        enough = 3 if gone == 1.0 else _PATIENCE
-        if steps - begun > enough and error >= 0.25 * best and error <= 1e6 * tolerance * (size + motion):
-            converged = True
-        best = min(best, error)
-        if settings[at.SOFT] < 1.0 and (converged or steps - begun > _PATIENCE):
-            error, size, spring = stiffen(t, factor, spring)
-            converged = settings[at.SOFT] == 1.0 and error <= tolerance * (size + motion) + rounding
-            begun, best = steps, error
-    if settings[at.SOFT] != 1.0:
-        error, size, spring = resist(t, 1.0)
-    if steps > (1 if predicting else 0):
-        motion = motion_scale(t)
-    total = size + motion + rounding / tolerance
-    return steps, converged, math.sqrt(error / total) if 0.0 < total < math.inf else total
-
-
-@kernel
-def softness(t, factor):  # type: ignore[no-untyped-def]
-    """Share of their stiffness with which all joints resist no more than some times as much as their bodies' inertia.
-
-    Where weak joints are stiff beyond that, the energy has a kink wherever one begins to yield, each in the way of all
-    others, and Newton's method gets nowhere. Which joints yield is decided by their strength and by the bodies'
-    inertia, so joints that are soft find it out in a few steps; then they are made stiffer, and stiffer again, each
-    time with those yielding that did, see `stiffen`.
-    """
-    lightness, stiffness, most = views.per_joint(t, at.LIGHTNESS), views.stiffness(t), 0.0
-    for k in range(t[at.JOINTS]):
-        for i, word in ((0, 0), (1, 3), (2, 5)):
-            most = max(most, factor * stiffness[k, word] * lightness[k, i])
-    return min(_SOFT / most, 1.0) if most > 0.0 else 1.0
-
-
-@kernel
-def stiffen(t, factor, spring):  # type: ignore[no-untyped-def]
-    """Make soft joints stiffer, along their lines first; returns what `measure` does then."""
-    settings = views.settings(t)
-    ratio = min(_STIFFER, 1.0 / settings[at.SOFT])
-    respond_stiffer(t, ratio)
-    factorise_matrix(t, factor)
-    newton_step(t, factor, spring)
-    return resist(t, ratio * settings[at.SOFT] if ratio == _STIFFER else 1.0)
-
-
-@kernel
-def resist(t, share):  # type: ignore[no-untyped-def]
-    """Have all joints resist with a ``share`` of their stiffness; returns what `measure` does then."""
-    views.settings(t)[at.SOFT] = share
-    return measure(t)
 
 
 @kernel

@@ -33,7 +33,7 @@ def reach_of(t):  # type: ignore[no-untyped-def]
 def respond(t):  # type: ignore[no-untyped-def]
     """Residual r of every joint at the present velocities, by its law; returns its energy, and that of the impulses.
 
-    Joints that are `SOFT` deform by that share of the way from where the last step ended.
+    Joints that are `SOFT` deform by that share of the way from the places in their rows of results, see `approach`.
     """
     joint_bodies, laws, scale = views.joint_bodies(t), views.laws(t), views.scale(t)
     gradient, deformation = views.gradient(t), views.per_joint(t, at.DEFORMATION)
@@ -83,33 +83,6 @@ def respond_along_lines(t, tangents, first):  # type: ignore[no-untyped-def]
         response[k, 2] = there[2] + (d02 * u + d12 * v + d22 * turn)
         response[k, TANGENT], response[k, TANGENT + 1], response[k, TANGENT + 2] = d00, d01, d02
         response[k, TANGENT + 3], response[k, TANGENT + 4], response[k, TANGENT + 5] = d11, d12, d22
-        of_residual, of_impulse = remain(t, k, reach, x, y, z)
-        error, size = error + of_residual, size + of_impulse
-    return error, size
-
-
-@kernel
-def respond_stiffer(t, ratio):  # type: ignore[no-untyped-def]
-    """As `respond`, but every law is a line with its last tangent, and by ``ratio`` stiffer than it was then."""
-    joint_bodies, result, response = views.joint_bodies(t), views.result(t), views.response(t)
-    gradient, deformation = views.gradient(t), views.per_joint(t, at.DEFORMATION)
-    velocity, damping = views.per_body(t, at.VELOCITY), views.damping(t)
-    reach, error, size = reach_of(t), 0.0, 0.0
-    for k in range(t[at.JOINTS]):
-        x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
-        r, d = response[k], TANGENT
-        if t[at.DAMPED] == 1:
-            r[0], r[1], r[2] = r[0] - damping[k, 0] * x, r[1] - damping[k, 1] * y, r[2] - damping[k, 2] * z
-            r[d] -= damping[k, 0] / reach
-            r[d + 3] -= damping[k, 1] / reach
-            r[d + 5] -= damping[k, 2] / reach
-        u, v = deformation[k, 0] + reach * x - result[k, 0], deformation[k, 1] + reach * y - result[k, 1]
-        turn = deformation[k, 2] + reach * z - result[k, 2]
-        r[0] += (ratio - 1.0) * (r[d] * u + r[d + 1] * v + r[d + 2] * turn)
-        r[1] += (ratio - 1.0) * (r[d + 1] * u + r[d + 3] * v + r[d + 4] * turn)
-        r[2] += (ratio - 1.0) * (r[d + 2] * u + r[d + 4] * v + r[d + 5] * turn)
-        for i in range(TANGENT, RESPONSE_WORDS):
-            r[i] *= ratio
         of_residual, of_impulse = remain(t, k, reach, x, y, z)
         error, size = error + of_residual, size + of_impulse
     return error, size

@@ -7,10 +7,11 @@ import numpy as np
 from sim.chipmunk import CONTACT_NORMAL_IMPULSE, CONTACT_TANGENT_IMPULSE, CONTACT_WORDS
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.admissible import bear_no_more
+from sim.kernels.approach import iterate
 from sim.kernels.commit import weaken
-from sim.kernels.complement import NOT_FINITE, gather_contacts, touch
+from sim.kernels.complement import NOT_FINITE, count_contacts, gather_contacts, touch
 from sim.kernels.layout import CACHED, INERTIA_I, INERTIA_M, WHERE
-from sim.kernels.newton import iterate
 from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
 from sim.kernels.rows import sum_up
 from sim.kernels.tie_impulses import solve_ties
@@ -18,12 +19,17 @@ from sim.memory import floats, kernel
 
 _MOST_ROUNDS = 40
 _SETTLED = 1e-6
+# Rounds after which contacts and joints are taken to go round in circles.
+_PATIENCE = 8
+# Residuals, as shares of the velocities, from which on joints may bear what they cannot.
+_ROUNDING = 1e-13
 
 
 @kernel
 def settle(c, fresh, touching):  # type: ignore[no-untyped-def]
     """Solve joints, breaking, contacts and ties in turn until they agree; whether they do."""
     predicting, first, tied, struck, pulled = fresh, True, False, 0.0, 0.0
+    last = np.zeros(0)
     for turn in range(_MOST_ROUNDS + 1):
         change, taken, converged = 0.0, 0, True
         member = c
@@ -39,10 +45,12 @@ def settle(c, fresh, touching):  # type: ignore[no-untyped-def]
             break  # the joints have had the last word, and none bears more than it can
         # Contacts and ties are exact for the tangents they were solved with: once the joints agree, and they with each
         # other, nothing is left to do.
-        anew = first or taken > 0
+        anew = first or taken > 0 or (len(last) > 0 and last[-1] < 1.0)
         predicting, first = False, False
         if touching:
-            struck = touch(c) if anew or pulled > _SETTLED else 0.0
+            if turn == _PATIENCE:
+                last = np.zeros(2 * count_contacts(c) + 1)
+            struck = touch(c, last) if anew or pulled > _SETTLED else 0.0
         if tied:
             pulled = solve_ties(c) if anew or struck > _SETTLED else 0.0
         if struck == NOT_FINITE or pulled == NOT_FINITE:
@@ -65,6 +73,12 @@ def settle_bounces(c, fresh, touching):  # type: ignore[no-untyped-def]
             bounce_less(c, 0.5 if k < MOST_HALVINGS - 1 else 0.0)
             # Not the constants False and True: Numba would compile all of it anew for them.
             converged = settle(c, not touching, touching)
+    member = c
+    while member != 0:
+        t = views.control(member)
+        if _ROUNDING < views.settings(t)[at.LAST_RESIDUAL] < math.inf and t[at.SPREAD] == 0:
+            bear_no_more(t)
+        member = t[at.NEXT]
     return converged
 
 

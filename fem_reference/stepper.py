@@ -34,6 +34,9 @@ _LATE_TOLERANCE, _LATE = 1e-12, 8
 _MOST_ITERATIONS = 30
 #: Of a Newton step: where sections yield throughout, one may be ten thousand times too long.
 _MOST_CUTS = 20
+#: Newton steps in a row, none of which leads anywhere however short, after which a shorter step in time is tried. At an
+#: ideal hinge that yields and unloads by turns they go on for ever; elsewhere at most five were seen before one did.
+_MOST_IN_VAIN = 8
 _MOST_PIECES = 256
 #: Share of h² K in the mass matrix that is inverted for a start: degrees of freedom without mass follow statically.
 _REGULAR = 1e-9
@@ -166,7 +169,7 @@ class Stepper:
         """
         solver = self.state.solver
         free = solver.free
-        new = start
+        new, in_vain = start, 0
         response, force = balance(new)
         for iteration in range(_MOST_ITERATIONS):
             matrices = inertia * self.mass.matrices + stiff * response.matrices
@@ -183,10 +186,15 @@ class Stepper:
                 response, force = balance(new)
                 slope = float(force[free] @ change)
                 if slope >= -0.5 * here and (slope <= 0.5 * here or length == 1.0):
+                    in_vain = 0
                     break
                 if slope < 0.0:
                     high, high_slope = length, slope
                 else:
                     low, low_slope = length, slope
                 length = low + (high - low) * min(max(low_slope / (low_slope - high_slope), 0.1), 0.9)
+            else:
+                in_vain += 1
+                if in_vain == _MOST_IN_VAIN:
+                    break
         return None

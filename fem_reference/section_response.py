@@ -104,11 +104,11 @@ class FibreSections:
 
     def plastic_strain(self, strain: np.ndarray, slip: np.ndarray) -> np.ndarray:
         """ε - σ / E of every fibre, (n, q, f), at strains (n, q, 3) with the slips (n, q, f, l) that belong to them."""
-        kind, of = self.kind, self.material[self.kind]
-        fibre = strain[..., :1] - self.y[kind][:, None] * strain[..., 1:2]
-        layers = np.sum((fibre[..., None] - slip) * self.drops[of][:, None], axis=-1)
-        stress = self.last_slope[of][:, None] * fibre + layers
-        return np.asarray(fibre - stress / self.youngs_modulus[of][:, None])
+        plastic = np.empty(slip.shape[:3])
+        _plastic_strain(
+            strain, slip, self.kind, self.y, self.material, self.youngs_modulus, self.last_slope, self.drops, plastic
+        )
+        return plastic
 
 
 @njit(cache=True, error_model="numpy")
@@ -172,3 +172,19 @@ def _elements(  # type: ignore[no-untyped-def]
         for i in range(size):
             for j in range(i):
                 matrix[e, j, i] = matrix[e, i, j]
+
+
+@njit(cache=True, error_model="numpy")
+def _plastic_strain(  # type: ignore[no-untyped-def]
+    strain, slip, kind, y, material, youngs_modulus, last_slope, drops, plastic
+):  # fmt: skip
+    n, points, fibres, layers = slip.shape
+    for e in range(n):
+        for p in range(points):
+            for f in range(fibres):
+                here = strain[e, p, 0] - y[kind[e], f] * strain[e, p, 1]
+                r = material[kind[e], f]
+                of_layers = 0.0
+                for j in range(layers):
+                    of_layers += (here - slip[e, p, f, j]) * drops[r, j]
+                plastic[e, p, f] = here - (last_slope[r] * here + of_layers) / youngs_modulus[r]

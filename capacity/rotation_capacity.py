@@ -16,6 +16,9 @@ from capacity.materials import Material
 from capacity.moment_curvature import moment_curvature
 from capacity.sections import Section
 
+#: How near to its ultimate strain a fibre is that breaks, as a share of it, and most trials: ten mostly do.
+_EXACT, _MOST_TRIALS = 1e-14, 100
+
 
 @dataclass(frozen=True)
 class RotationCapacity:
@@ -67,14 +70,9 @@ def rotation_capacity(
     length = section.depth if hinge_length is None else hinge_length
     if not length > 0.0:
         raise InputError("hinge length", f"{length:g} m is not greater than zero", 'write one such as "100 mm"')
-    low, high = 0.0, 2.0 * max(m.stress_strain.ultimate_strain for m in materials) / section.depth
-    while not moment_curvature(section, material, [high], axial_force).broken[0]:
-        high *= 2.0
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        broken = moment_curvature(section, material, [middle], axial_force).broken[0]
-        low, high = (low, middle) if broken else (middle, high)
-    at_break = moment_curvature(section, material, [low], axial_force)
+    largest = max(m.stress_strain.ultimate_strain for m in materials)
+    ultimate = _ultimate_curvature(section, material, axial_force, 2.0 * largest / section.depth)
+    at_break = moment_curvature(section, material, [ultimate], axial_force)
     bending = section.weighted(lambda m: m.youngs_modulus, material).moments()
     stiffness = float(bending[5] - bending[2] ** 2 / bending[0])
     strain = min(m.stress_strain.ultimate_strain for m in materials)
@@ -83,9 +81,40 @@ def rotation_capacity(
         for m, part in zip(materials, section.parts, strict=True)
     )
     return RotationCapacity(
-        plastic_rotation=(low - float(at_break.moment[0]) / stiffness) * length,
+        plastic_rotation=(ultimate - float(at_break.moment[0]) / stiffness) * length,
         elongation=(strain - force / float(bending[0])) * length,
-        ultimate_curvature=low,
+        ultimate_curvature=ultimate,
         ultimate_moment=float(at_break.moment[0]),
         hinge_length=length,
     )
+
+
+def _ultimate_curvature(section: Section, material: Material, axial_force: float, high: float) -> float:
+    """Curvature at which the first fibre breaks [1/m], by false position; 0 where the axial force alone does it.
+
+    The end of the bracket that stays counts by half (the Illinois method), or it would stay for ever.
+    """
+
+    def left(curvature: float) -> float:
+        """What is left of the ultimate strain, as a share."""
+        return 1.0 - float(moment_curvature(section, material, [curvature], axial_force).largest_strain[0])
+
+    low, at_low, at_high = 0.0, left(0.0), left(high)
+    if at_low <= 0.0:
+        return 0.0
+    while at_high >= 0.0:
+        high *= 2.0
+        at_high = left(high)
+    stayed = 0.0
+    for _ in range(_MOST_TRIALS):
+        trial = high - at_high * (high - low) / (at_high - at_low)
+        found = left(trial)
+        if abs(found) <= _EXACT or not low < trial < high:
+            return trial
+        if found > 0.0:
+            low, at_low = trial, found
+            at_high, stayed = at_high * (0.5 if stayed > 0.0 else 1.0), 1.0
+        else:
+            high, at_high = trial, found
+            at_low, stayed = at_low * (0.5 if stayed < 0.0 else 1.0), -1.0
+    return low

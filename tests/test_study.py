@@ -139,7 +139,7 @@ def test_a_dask_cluster_that_loses_a_worker_loses_no_point(tmp_path: Path) -> No
     points = model_points(Choices(rules=("lobatto",), joints=(2, 3, 4, 5), laws=("fibre",), dt=(1 / 60,), stock=()))
     keys, journal = point_keys(scene, points), Journal(tmp_path)
     with distributed.LocalCluster(
-        n_workers=3, threads_per_worker=1, dashboard_address=":0", silence_logs=50, protocol="tcp://"
+        n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50, protocol="tcp://"
     ) as cluster:
         victims = [worker.pid for worker in cluster.workers.values()]
 
@@ -149,7 +149,7 @@ def test_a_dask_cluster_that_loses_a_worker_loses_no_point(tmp_path: Path) -> No
 
         address = cluster.scheduler_address.removeprefix("tcp://")
         with workers(f"dask://{address}") as hired:
-            assert hired.number == 3
+            assert hired.number == 2
             sweep(keys, partial(measure, scene, reference), hired, journal, kill_one)
     assert (tmp_path / NAME).read_text().count("\n") == len(points) == len(journal.results)
     for key, point in list(keys.items())[:2]:

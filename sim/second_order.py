@@ -27,6 +27,18 @@ import math
 import numpy as np
 import pymunk
 
+from sim.chipmunk import (
+    ANGLE,
+    BODY_WORDS,
+    FORCE_X,
+    FORCE_Y,
+    MOMENT,
+    MOMENT_INVERSE,
+    SPIN,
+    TORQUE,
+    body_address,
+    words,
+)
 from sim.kernels import layout as at
 from sim.members import Assembly
 
@@ -56,6 +68,8 @@ class SecondOrder:
         self._structure = assembly.structure
         self._dead_loads, self._pattern = assembly.dead_loads, assembly.driven(self._node, self._direction)
         self._bodies = [b for b in self._structure.bodies if b.body_type == pymunk.Body.DYNAMIC]
+        # Their structs: by pymunk's attributes, half of what a push takes would be spent here.
+        self._words = [words(body_address(body), BODY_WORDS) for body in self._bodies]
         self._row = {body: i for i, body in enumerate(self._bodies)}
         self._inertia = np.array([self._own_inertia.setdefault(body, body.moment) for body in self._bodies])
         self._start = np.zeros(len(self._bodies))
@@ -92,7 +106,7 @@ class SecondOrder:
                 if load.body in self._row:
                     arm = load.body.local_to_world(load.point) - load.body.position
                     reach[self._row[load.body]] += share * arm.dot(load.force)
-        angle, step = np.array([(body.angle, dt * body.angular_velocity) for body in self._bodies]).T
+        angle, step = np.array([(w.item(ANGLE), dt * w.item(SPIN)) for w in self._words]).T
         # Chipmunk moves the bodies by one step before it asks for forces.
         turned = angle + step - self._start
         frames = np.bincount(of, weights=self._share * turned[self._body_of], minlength=len(N))
@@ -104,10 +118,11 @@ class SecondOrder:
         )
         implicit = (self._inertia + (self._more + 1.0) * dt * dt * np.maximum(reach, 0.0)).tolist()
         forces = np.column_stack([x, y, moments]).tolist()
-        for body, (fx, fy, moment), inertia in zip(self._bodies, forces, implicit, strict=True):
-            body.moment = inertia
-            body.force += fx, fy
-            body.torque += moment
+        for w, (fx, fy, moment), inertia in zip(self._words, forces, implicit, strict=True):
+            w[MOMENT], w[MOMENT_INVERSE] = inertia, 1.0 / inertia
+            w[FORCE_X] += fx
+            w[FORCE_Y] += fy
+            w[TORQUE] += moment
 
     def _on_bodies(self, of_sides: np.ndarray) -> np.ndarray:
         """What the sides of all joints add up to on every body, (bodies,)."""

@@ -116,7 +116,7 @@ def _constraints_fit() -> bool:
     space, a, b, c, d = pymunk.Space(), *(pymunk.Body(1.0, 1.0) for _ in range(4))
     first, last = pymunk.PivotJoint(a, b, (29.0, 31.0), (37.0, 41.0)), pymunk.PivotJoint(c, d, (0.0, 0.0))
     between, unlike = pymunk.PivotJoint(b, c, (0.0, 0.0)), pymunk.GearJoint(a, d, 0.0, 1.0)
-    first.max_force = 73.0
+    first.max_force, first.error_bias = 73.0, 0.79
     space.add(a, b, c, d, first, last, between)
     one, two, three, four = (address(joint._constraint) for joint in (first, last, between, unlike))
     kinds = [int(words(location, 1, np.int64)[at.CONSTRAINT_CLASS]) for location in (one, two, four)]
@@ -126,6 +126,7 @@ def _constraints_fit() -> bool:
     fits &= fields[at.CONSTRAINT_BODY_A] == body_address(a) and fields[at.CONSTRAINT_BODY_B] == body_address(b)
     fits &= fields[at.CONSTRAINT_SPACE] == address(space._space)
     fits &= words(one, at.CONTROL)[at.CONSTRAINT_MAX_FORCE] == 73.0
+    fits &= words(one, at.CONTROL)[at.CONSTRAINT_ERROR_BIAS] == 0.79
     fits &= after[at.CONSTRAINT_NEXT_A] == one and after[at.CONSTRAINT_NEXT_B] == two
     fits &= words(body_address(a), at.BODY_FULL_WORDS, np.int64)[at.CONSTRAINTS] == one
     lib.cpConstraintSetPostSolveFunc(first._constraint, ffi.cast("cpConstraintPostSolveFunc", 73))

@@ -169,7 +169,7 @@ def _pairs(structure: Structure, index: Collection[pymunk.Body]) -> Iterator[Pai
     others = [
         (other, *_extent(other))
         for other in sorted(space.bb_query(around, pymunk.ShapeFilter()), key=_number)
-        if other.body not in index and not other.sensor and _is_free(other.body, touching)
+        if other.body not in index and not other.sensor and _is_free(other.body, index, touching)
     ]
     if not others:
         return
@@ -224,10 +224,11 @@ def _extent(shape: pymunk.Shape) -> tuple[tuple[float, float, float, float], flo
     return (box.left, box.bottom, box.right, box.top), reach, abs(body.velocity) + abs(body.angular_velocity) * reach
 
 
-def _is_free(body: pymunk.Body | None, touching: np.ndarray) -> bool:
+def _is_free(body: pymunk.Body | None, index: Collection[pymunk.Body], touching: np.ndarray) -> bool:
     """Whether a body may be solved with a structure within a step: parts do not know how constraints move it.
 
-    But for those at the addresses that are ``touching`` when it begins, and what constraints link to them.
+    But for those at the addresses that are ``touching`` when it begins, and what constraints link to them, or to the
+    bodies of its ``index``.
     """
     if body is None or body.is_sleeping:
         return False
@@ -238,7 +239,7 @@ def _is_free(body: pymunk.Body | None, touching: np.ndarray) -> bool:
             control = joint.structure.tables.control
             # That one has listed this one's shapes among its own already, if it was first.
             return not (control[at.NEAR] > 0 or control[at.SPREAD] or joint.structure.whole_steps_only)
-    return any(chipmunk.body_address(one) in touching for one in _linked(body))
+    return any(one in index or chipmunk.body_address(one) in touching for one in _linked(body))
 
 
 def _linked(body: pymunk.Body) -> list[pymunk.Body]:

@@ -19,7 +19,7 @@ from sim.chipmunk import CONSTRAINT_CLASS, CONTROL, address, words
 LINE, POINT, TURN = 0, 1, 2
 #: Words of a row of `kinds`.
 KIND_CLASS, KIND_IMPULSE, KIND_COUNT, KIND_WAY, KIND_MASS, KIND_ARMS, KIND_AXIS = range(7)
-KIND_RATIO, KIND_TARGET, KIND_COEFFICIENT, KIND_DAMPING, KIND_WORDS = 7, 8, 9, 10, 11
+KIND_RATIO, KIND_TARGET, KIND_COEFFICIENT, KIND_DAMPING, KIND_HOLDS, KIND_WORDS = 7, 8, 9, 10, 11, 12
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,8 @@ class Kind:
     target, coefficient, damping : int
         Of a spring's damper: velocity of the ends against each other that it has led to in this step, share of what is
         above that which it takes, and its constant.
+    holds : bool
+        Whether it keeps a point of one body at the other, however these move.
     """
 
     make: Callable[[pymunk.Body, pymunk.Body], pymunk.Constraint]
@@ -58,17 +60,20 @@ class Kind:
     target: int = 0
     coefficient: int = 0
     damping: int = 0
+    holds: bool = False
 
 
 #: Where the constraints of `Kind.make` hold the two bodies, from their centres.
 ON_A, ON_B = (0.5, 0.0), (-0.25, 0.0)
 
 KINDS: dict[type[pymunk.Constraint], Kind] = {
-    pymunk.PinJoint: Kind(lambda a, b: pymunk.PinJoint(a, b, ON_A, ON_B), 25, LINE, 24, arms=18, axis=22),
+    pymunk.PinJoint: Kind(lambda a, b: pymunk.PinJoint(a, b, ON_A, ON_B), 25, LINE, 24, arms=18, axis=22, holds=True),
     pymunk.SlideJoint: Kind(lambda a, b: pymunk.SlideJoint(a, b, ON_A, ON_B, 0.0, 1.0), 26, LINE, 25, arms=19, axis=23),
-    pymunk.PivotJoint: Kind(lambda a, b: pymunk.PivotJoint(a, b, ON_A, ON_B), 25, POINT, 21, count=2, arms=17),
+    pymunk.PivotJoint: Kind(
+        lambda a, b: pymunk.PivotJoint(a, b, ON_A, ON_B), 25, POINT, 21, count=2, arms=17, holds=True
+    ),
     pymunk.GrooveJoint: Kind(
-        lambda a, b: pymunk.GrooveJoint(a, b, (0.0, 0.0), ON_A, ON_B), 32, POINT, 28, count=2, arms=24
+        lambda a, b: pymunk.GrooveJoint(a, b, (0.0, 0.0), ON_A, ON_B), 32, POINT, 28, count=2, arms=24, holds=True
     ),
     pymunk.RotaryLimitJoint: Kind(lambda a, b: pymunk.RotaryLimitJoint(a, b, 0.0, 1.0), 17, TURN, 15),
     pymunk.RatchetJoint: Kind(lambda a, b: pymunk.RatchetJoint(a, b, 0.0, 1.0), 18, TURN, 16),
@@ -107,7 +112,7 @@ def kinds() -> np.ndarray:
         row[KIND_CLASS] = words(constraint, 1, np.int64)[CONSTRAINT_CLASS]
         row[KIND_IMPULSE:KIND_WAY] = kind.impulse, kind.count
         row[KIND_WAY:KIND_TARGET] = kind.way, kind.mass, kind.arms, kind.axis, kind.ratio
-        row[KIND_TARGET:] = kind.target, kind.coefficient, kind.damping
+        row[KIND_TARGET:] = kind.target, kind.coefficient, kind.damping, kind.holds
     return rows
 
 

@@ -12,6 +12,7 @@
 | ``contacts``, ``complement``, ``rows`` | contacts of the structures' bodies, solved through the structures |
 | ``active_rows`` | contacts where sweeps, or turns between contacts and joints, would take forever |
 | ``ties``, ``tie_impulses`` | Chipmunk's own constraints at the structures' bodies, solved through the structures |
+| ``tie_blows`` | blows that such constraints give: what a rope catches, say |
 | ``restitution``, ``overlap`` | no more bounce than there is energy for; taking out overlap |
 | ``owners``, ``others`` | which structures are solved together, and the bodies that move with them |
 | ``commit``, ``halfway`` | the end of a step: plastic state, breaking, what the joints bore |
@@ -19,7 +20,7 @@
 | ``resolved`` | the average-acceleration rule only where it resolves how bodies turn |
 | ``refusal``, ``noted`` | a step that is refused, and what else it has changed in the space |
 | ``idle`` | joints that another one acts for, out of Chipmunk's list while it solves |
-| ``loose``, ``links`` | bodies without joints, for the ledger of a space; Chipmunk's own constraints between them |
+| ``loose``, ``reached``, ``links`` | bodies without joints; those reached by Chipmunk's own constraints, and these |
 | ``bodies``, ``moves``, ``settle`` | velocities and places; joints, contacts and ties in turn until they agree |
 | ``blow``, ``sudden`` | when a step is taken in parts, inside the one that Chipmunk takes |
 | ``parts``, ``part``, ``lengths`` | how it is taken in them, and how long they are |

@@ -24,9 +24,6 @@ from sim.chipmunk import (
     BIAS_VX,
     BODY_FULL_WORDS,
     BODY_WORDS,
-    CONSTRAINT_BODY_A,
-    CONSTRAINT_BODY_B,
-    CONSTRAINT_WORDS,
     CONTACT_BIAS_IMPULSE,
     CONTACT_BYTES,
     CONTACT_NORMAL_IMPULSE,
@@ -54,9 +51,12 @@ from sim.kernels.layout import (
     STRIKE,
     WHOLE_RATIO,
 )
-from sim.kernels.links import index_in
+from sim.kernels.links import is_tie
 from sim.kernels.noted import LOOSE_WORDS, MATE, NOTES_WORDS, ask, row_of, row_of_contact
+from sim.kernels.reached import index_in
 from sim.kernels.rows import loose_velocity, push_loose
+from sim.kernels.tie_blows import catches
+from sim.kernels.ties import OWNER, TIE_WORDS, address_of
 from sim.memory import call_notice, floats, integers, kernel
 
 
@@ -166,18 +166,28 @@ def note_starts_beside(head):  # type: ignore[no-untyped-def]
 
 @kernel
 def leave_out_borne(head, others, links, pushes):  # type: ignore[no-untyped-def]
-    """Leave out the changes of velocity of those that contacts beside a group bear, or what is linked to them."""
+    """Leave out the changes of velocity of those that contacts beside a group bear, or what is linked to them.
+
+    Or that hang on a structure that is held, but by a tie that catches them.
+    """
     t = views.control(head)
     places, borne, spreads = views.places(t), np.zeros(len(others), np.bool_), True
     for k in range(t[at.CONTACTS] - t[at.NEAR]):
         if places[k, OWNER_A] == 0 and places[k, OWNER_B] == 0:
             for i in range(len(others)):
                 borne[i] = borne[i] or places[k, BODY_A] == others[i] or places[k, BODY_B] == others[i]
+    for k in range(len(links)):
+        tie = integers(links[k], TIE_WORDS)
+        if is_tie(tie) and not catches(tie):
+            for side in range(2):
+                owner, i = tie[OWNER + 1 - side], index_in(others, address_of(tie, side))
+                if owner != 0 and i >= 0:
+                    borne[i] = borne[i] or views.control(owner)[at.FREE] == 0
     while spreads:
         spreads = False
         for k in range(len(links)):
-            w = integers(integers(links[k], 1)[0], CONSTRAINT_WORDS)
-            i, j = index_in(others, w[CONSTRAINT_BODY_A]), index_in(others, w[CONSTRAINT_BODY_B])
+            tie = integers(links[k], TIE_WORDS)
+            i, j = index_in(others, address_of(tie, 0)), index_in(others, address_of(tie, 1))
             if i >= 0 and j >= 0 and borne[i] != borne[j]:
                 borne[i] = borne[j] = spreads = True
     for i in range(len(others)):

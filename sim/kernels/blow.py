@@ -8,6 +8,7 @@ is over:
 - a blow is a contact with a speed of approach beyond what outer forces give in two steps (what is laid down on a
   structure, or rests on it, is none), and with more than a thousandth of the structure's kinetic and elastic
   energy;
+- so is a tie that stops what was set moving against it, see `tie_blows`;
 - so is what forces from outside bring suddenly, see `sudden`;
 - it is over when the structure has turned and swung back: for as long again as its joints went on to take energy, to
   store it or to flow, they took no more; or when whole steps would lose less than a thousandth of the blow's energy in
@@ -15,7 +16,7 @@ is over:
   as long loses n times that in its time.
 
 So the largest and the lasting deflection are found at any step; what swings behind them is damped as ever. Nothing is
-spent on this where nothing is hit. A structure that constraints of Chipmunk's own hold is left to whole steps.
+spent on this where nothing is hit.
 """
 
 import math
@@ -56,9 +57,10 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.lengths import longest, note_shortest
-from sim.kernels.links import MOST_LINKED, reach
+from sim.kernels.reached import MOST_LINKED, reach
 from sim.kernels.rows import own_velocity
 from sim.kernels.sudden import WORTH
+from sim.kernels.tie_blows import blow_by_ties
 from sim.memory import floats, inlined, kernel
 
 # Over what outer forces give in a step.
@@ -70,7 +72,7 @@ _MORE = 1e-3
 # How long a structure takes to turn and swing back, over how long it takes to turn.
 _BACK = 2.0
 # Of the energy of a blow that is not damped, or of what moves after forces, taken by the joints when a structure turns.
-_TURNED = 0.25
+_STOPPED, _TURNED = 0.5, 0.25
 # After so long they need not: a pendulum's joints never take it, and what swings so slowly whole steps hardly damp [s].
 _LONG = 1.0
 #: Of the blow's energy, lost in a second [1/s].
@@ -81,14 +83,15 @@ OVER = 0.05
 def takes_parts(head):  # type: ignore[no-untyped-def]
     """Whether a group of structures takes the step that begins in parts."""
     of_head = views.settings(views.control(head))
-    kinetic, elastic, lasting, new, sudden, c = 0.0, 0.0, 0.0, 0.0, 0.0, head
+    kinetic, elastic, lasting, new, sudden, tied, c = 0.0, 0.0, 0.0, 0.0, 0.0, False, head
     taken = sum_of(head, LEDGER_ELASTIC) + sum_of(head, LEDGER_PLASTIC)
     while c != 0:
         t = views.control(c)
         ledger, settings = views.ledger(t), views.settings(t)
-        if t[at.SPREAD] == 1 or t[at.TIED] > 0 or settings[WHOLE_ONLY] != 0.0:
+        if t[at.SPREAD] == 1 or settings[WHOLE_ONLY] != 0.0:
             return False
         kinetic, elastic = kinetic + ledger[LEDGER_KINETIC], elastic + ledger[LEDGER_ELASTIC]
+        tied = tied or t[at.TIED] > 0
         lasting, sudden = max(lasting, settings[BLOW]), sudden + settings[SUDDEN]
         places, touches, lies = views.places(t), views.touches(t), False
         for k in range(t[at.CONTACTS]):
@@ -103,6 +106,10 @@ def takes_parts(head):  # type: ignore[no-untyped-def]
         c = t[at.NEXT]
     if new <= WORTH_OF_BLOW * (kinetic + elastic):
         new = 0.0
+    if tied:
+        of_ties = blow_by_ties(head, WORTH_OF_BLOW * (kinetic + elastic))
+        # They stop what has come suddenly from outside, too.
+        new = max(new, of_ties if of_ties > _SUDDEN * sudden else 0.0)
     worth = 0.5 * (WORTH_OF_BLOW if new >= sudden else WORTH)
     new = max(new, sudden)
     if new > 0.0 or lasting == 0.0:
@@ -161,10 +168,10 @@ def is_over(head):  # type: ignore[no-untyped-def]
         return False  # nothing moves yet
     # With hardly any damping, stiff joints ring before anything else turns.
     if settings[UNDAMPED] == AFTER_IMPULSES:
-        to_turn = settings[BLOW]
+        to_turn = _STOPPED * settings[BLOW]
     elif settings[UNDAMPED] == AFTER_FORCES and t[at.FREE] == 0:
-        to_turn = sum_of(head, LEDGER_KINETIC) - settings[BLOW_KINETIC]
-    turned = settings[BLOW_MOST] - settings[BLOW_LEAST] >= _TURNED * to_turn or settings[BLOW_AGE] >= _LONG
+        to_turn = _TURNED * (sum_of(head, LEDGER_KINETIC) - settings[BLOW_KINETIC])
+    turned = settings[BLOW_MOST] - settings[BLOW_LEAST] >= to_turn or settings[BLOW_AGE] >= _LONG
     back = turned and settings[BLOW_AGE] >= _BACK * settings[BLOW_MOST_AT]
     return back or settings[BLOW] < settings[BLOW_SHARE] * sum_of(head, LEDGER_ELASTIC)
 

@@ -118,8 +118,11 @@ def arrive(t, h):  # type: ignore[no-untyped-def]
                 shifted = shifted or by_contacts != 0.0
             place = b[ANGLE] if axis == 2 else b[X + axis]
             rest = place - (position[i, axis] + h * last[i, axis] + by_contacts)
+            nothing = _UNMOVED * (1.0 + abs(place))
+            if i >= moving and abs(rest + h * (last[i, axis] - v)) <= nothing:
+                rest = 0.0  # what carries a support along moves it by its new velocity
             # A structure that is new does not know where its bodies were.
-            if abs(rest) > _UNMOVED * (1.0 + abs(place)):
+            if abs(rest) > nothing:
                 shift[i, 3 + axis], shifted = rest, True
     t[at.SHIFTED], t[at.FORCED] = 1 if shifted else 0, 1 if forced else 0
     return fastest, touching, bounded

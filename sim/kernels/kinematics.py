@@ -58,7 +58,7 @@ def take_up(t, ratio):  # type: ignore[no-untyped-def]
                 impulse[k, i] *= share
         if t[at.BREAKABLE] == 1:
             scale[k] = 1.0
-    t[at.FREE], t[at.HOLDING] = 0 if held else 1, holding
+    t[at.FREE], t[at.HOLDING] = 0 if held or t[at.PINNED] == 1 else 1, holding
 
 
 @kernel

@@ -1,8 +1,10 @@
 """Back to when bodies touched.
 
 A blow is noticed once bodies overlap. All are put back to where they were when they touched, τ ago, and the parts are
-those of h + τ. Chipmunk's velocities belong to half a step before their time, as energies go (n g h of a body that fell
-for n steps, where √(n (n + 1)) g h belongs to its way), so what falls is given what outer forces do in ½ h - τ.
+those of h + τ. So is what a tie catches, and what stands on a support that is given another velocity: that one has been
+moved by it for a step before any joint could resist. Chipmunk's velocities belong to half a step before their time, as
+energies go (n g h of a body that fell for n steps, where √(n (n + 1)) g h belongs to its way), so what falls is given
+what outer forces do in ½ h - τ.
 """
 
 from sim.chipmunk import BODY_WORDS, MASS_INVERSE, SPIN, VX
@@ -10,16 +12,18 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import load_positions, move
 from sim.kernels.inertia import moment_of
-from sim.kernels.layout import GAP, INVERSE_M, MOVE, OTHER_START, STRIKE, WHOLE_STEP
-from sim.kernels.noted import SPEED
+from sim.kernels.layout import GAP, INVERSE_M, MOVE, OTHER_START, STRIKE, SUDDEN, WHOLE_STEP
+from sim.kernels.noted import NOTES_WORDS, SPEED, TIES_COUNT
 from sim.kernels.others import pushed, touched, which
 from sim.kernels.rows import own_velocity
-from sim.memory import floats, kernel
+from sim.kernels.tie_blows import catches, lateness_of
+from sim.kernels.ties import OWNER, address_of, tie_at
+from sim.memory import floats, integers, kernel
 
 
 @kernel
 def lateness(head):  # type: ignore[no-untyped-def]
-    """How long ago those that strike have touched, at most the last move [s]."""
+    """How long ago those that strike have touched, or a support was set moving, at most the last move [s]."""
     late, c = 0.0, head
     while c != 0:
         t = views.control(c)
@@ -28,10 +32,38 @@ def lateness(head):  # type: ignore[no-untyped-def]
         for k in range(0 if t[at.AFTER_PARTS] == 1 else t[at.CONTACTS]):
             if touches[k, STRIKE] > 0.0:
                 late = max(late, -touches[k, GAP] / touches[k, STRIKE])
+        late = max(late, lateness_of_ties(c))
+        if t[at.JERKED] == 1 and settings[SUDDEN] > 0.0:
+            late = settings[MOVE]
         # A step that is shorter than the last one may have moved bodies back.
         late = min(late, max(settings[MOVE], 0.0))
         c = t[at.NEXT]
     return late
+
+
+@kernel
+def lateness_of_ties(c):  # type: ignore[no-untyped-def]
+    """How long ago ties of a structure that give a blow have caught what they stop, or -1 if none does [s]."""
+    t, late = views.control(c), -1.0
+    notes = integers(t[at.NOTES], NOTES_WORDS)
+    for k in range(notes[TIES_COUNT] if t[at.TIED] > 0 and t[at.AFTER_PARTS] == 0 else 0):
+        tie = tie_at(notes, k)
+        if tie[OWNER] == c or tie[OWNER + 1] == c:
+            late = max(late, lateness_of(tie)[0])
+    return late
+
+
+@kernel
+def is_caught(c, body):  # type: ignore[no-untyped-def]
+    """Whether a tie of a structure gives a loose body, or any if ``body`` is 0, a blow."""
+    t = views.control(c)
+    notes = integers(t[at.NOTES], NOTES_WORDS)
+    for k in range(notes[TIES_COUNT] if t[at.TIED] > 0 else 0):
+        tie = tie_at(notes, k)
+        for side in range(2):
+            if tie[OWNER + 1 - side] == c and catches(tie) and (body == 0 or address_of(tie, side) == body):
+                return True
+    return False
 
 
 @kernel
@@ -68,9 +100,12 @@ def go_back(head, others, rows, pushes, late):  # type: ignore[no-untyped-def]
             move(body_at[i], -late * last[i, 0], -late * last[i, 1], -late * last[i, 2])
         for i in range(t[at.BODIES]):
             for axis in range(3):
+                if t[at.JERKED] == 1 and i >= moving:
+                    # So its last move is the one before that.
+                    start[i, axis] = last[i, axis]
                 shift[i, axis] -= late * (last[i, axis] if i < moving else start[i, axis])
         t[at.SHIFTED] = 1
-        if struck and t[at.FREE] == 1:
+        if (struck or is_caught(c, 0)) and t[at.FREE] == 1:
             share = (0.0 if t[at.AFTER_PARTS] == 1 else 0.5) - gone
             for i in range(t[at.MOVING]):
                 start[i, 0] += share * external[i, 0] * weight[i, INVERSE_M]
@@ -79,10 +114,13 @@ def go_back(head, others, rows, pushes, late):  # type: ignore[no-untyped-def]
         c = t[at.NEXT]
     for i in range(len(others)):
         b, share = floats(others[i], BODY_WORDS), 0.5 - gone
-        near = touched(head, others[i], 1)
+        near, caught, c = touched(head, others[i], 1), False, head
+        while c != 0:
+            caught = caught or is_caught(c, others[i])
+            c = views.control(c)[at.NEXT]
         if near:
             share = behind_in(head, others[i]) - gone
-        if b[MASS_INVERSE] > 0.0 and (near or hit) and not touched(head, others[i], 0):
+        if b[MASS_INVERSE] > 0.0 and (near or hit or caught) and not touched(head, others[i], 0):
             b[VX] += share * pushes[i, 0]
             b[VX + 1] += share * pushes[i, 1]
 

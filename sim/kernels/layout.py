@@ -53,11 +53,12 @@ THEIR_POST_SOLVE = 40
 SEEN, NEW = 41, 42
 # Whether any lower block of the matrix is not one joint's alone: another's too, or filled in.
 SHARED = 43
-# How many of its joints Chipmunk has come to in this step.
-CALLED = 44
+# How many of its joints Chipmunk has come to in this step; whether constraints of its own hold a structure, see `ties`;
+# whether a support was set moving at once, see `late`.
+CALLED, PINNED, JERKED = 44, 45, 46
 # In `ACTIVE`: the joint holds, and what it stores is not known yet, see `strained`.
 UNKNOWN = 2
-_FIRST_ADDRESS = 45
+_FIRST_ADDRESS = 47
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs

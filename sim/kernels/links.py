@@ -1,9 +1,10 @@
-"""Constraints of Chipmunk's own in a step that is taken in parts: those that hold loose bodies together.
+"""Constraints of Chipmunk's own in a step that is taken in parts: links between loose bodies, and ties of structures.
 
 What strikes a structure may be more than the body that touches it: a vehicle, say. Its other bodies, reached through
-constraints, go through the parts with it. Its constraints, springs and motors among them, are solved with the contacts,
-see `complement`, by Chipmunk's own functions and for the length of a part; what they have given in the step before its
-parts begin is taken back. A spring gives in each part what it does where its bodies are then.
+constraints, go through the parts with it; so do bodies that hang on the structure. Links, springs and motors among
+them, are solved with the contacts, see `complement`, and ties through the structures, see `tie_impulses`, by Chipmunk's
+own functions and for the length of a part; what they have given in the step before its parts begin is taken back. A
+spring gives in each part what it does where its bodies are then.
 """
 
 import math
@@ -11,17 +12,9 @@ import math
 import numpy as np
 
 from sim.chipmunk import (
-    BODY_FULL_WORDS,
-    BODY_SPACE,
-    BODY_WORDS,
-    CONSTRAINT_BODY_A,
-    CONSTRAINT_BODY_B,
     CONSTRAINT_CLASS,
     CONSTRAINT_MAX_FORCE,
-    CONSTRAINT_NEXT_A,
-    CONSTRAINT_NEXT_B,
     CONSTRAINT_WORDS,
-    CONSTRAINTS,
     MASS_INVERSE,
     SPIN,
     VX,
@@ -29,95 +22,29 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.inertia import mass_of, moment_of
-from sim.kernels.layout import BODY_A, BODY_B, OWNER_A, OWNER_B
+from sim.kernels.layout import INVERSE_I, INVERSE_M
 from sim.kernels.noted import NOTES_WORDS, TIES, TIES_COUNT, UNDER_WAY
-from sim.kernels.owners import owner_of
+from sim.kernels.reached import index_in
 from sim.kernels.ties import (
     CONSTRAINT,
+    INDEX,
     KIND,
     LINKED,
+    OWNER,
     SUM,
     TIE_WORDS,
+    address_of,
     body_of,
     given_by,
     impulse_of,
+    is_of,
     is_spring,
-    kind_of,
     slacken,
     tie_at,
 )
 from sim.memory import call_constraint, floats, integers, kernel
 
-#: Most bodies that are reached from those that touch; more are left to whole steps.
-MOST_LINKED = 64
 _PRE_STEP, _APPLY_IMPULSE = 0, 2
-
-
-@kernel
-def next_link(constraint, body):  # type: ignore[no-untyped-def]
-    """The constraint after this one in a body's list."""
-    w = integers(constraint, CONSTRAINT_WORDS)
-    return w[CONSTRAINT_NEXT_A] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_NEXT_B]
-
-
-@kernel
-def reach(head, bodies):  # type: ignore[no-untyped-def]
-    """Loose bodies that a group touches and those that constraints tie to them; how many, -1 if there are too many.
-
-    Also -1 where a constraint ties them to a structure or to a body in no space, or is none of Chipmunk's own.
-    """
-    leader = views.control(head)
-    functions = leader[at.OWN_CLASS]
-    count, c = 0, head
-    while c != 0:
-        t = views.control(c)
-        places = views.places(t)
-        for k in range(t[at.CONTACTS]):
-            if places[k, OWNER_A] == 0:
-                count = add(bodies, count, places[k, BODY_A])
-            if places[k, OWNER_B] == 0:
-                count = add(bodies, count, places[k, BODY_B])
-        c = t[at.NEXT]
-    done = 0
-    while 0 <= done < count:
-        body = bodies[done]
-        constraint = integers(body, BODY_FULL_WORDS)[CONSTRAINTS]
-        while constraint != 0:
-            w = integers(constraint, CONSTRAINT_WORDS)
-            if kind_of(leader, constraint) == 0:
-                return -1
-            other = w[CONSTRAINT_BODY_B] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_BODY_A]
-            is_moving = floats(other, BODY_WORDS)[MASS_INVERSE] > 0.0
-            if is_moving and (owner_of(other, functions) != 0 or integers(other, BODY_FULL_WORDS)[BODY_SPACE] == 0):
-                return -1
-            count = add(bodies, count, other)
-            if count < 0:
-                return -1
-            constraint = next_link(constraint, body)
-        done += 1
-    return count
-
-
-@kernel
-def add(bodies, count, body):  # type: ignore[no-untyped-def]
-    """Add a dynamic body to a list, once; returns how many there are, or -1 if there is no room."""
-    if floats(body, BODY_WORDS)[MASS_INVERSE] == 0.0 or count < 0:
-        return count
-    if index_in(bodies[:count], body) >= 0:
-        return count
-    if count == len(bodies):
-        return -1
-    bodies[count] = body
-    return count + 1
-
-
-@kernel
-def index_in(bodies, body):  # type: ignore[no-untyped-def]
-    """Where an address is among some, or -1."""
-    for i in range(len(bodies)):
-        if bodies[i] == body:
-            return i
-    return -1
 
 
 @kernel
@@ -149,23 +76,22 @@ def keep_sum(tie, share):  # type: ignore[no-untyped-def]
 
 @kernel
 def link(head, bodies):  # type: ignore[no-untyped-def]
-    """Have the constraints of these bodies go through a step's parts with a group."""
+    """Have the constraints of these bodies, and a group's ties, go through a step's parts with it."""
     notes = integers(views.control(head)[at.NOTES], NOTES_WORDS)
     for k in range(notes[TIES_COUNT]):
         tie = tie_at(notes, k)
-        if tie[KIND] != 0 and (is_at_end(tie, 0, bodies) or is_at_end(tie, 1, bodies)):
+        if is_of(tie, head) or (tie[KIND] != 0 and (is_at_end(tie, 0, bodies) or is_at_end(tie, 1, bodies))):
             tie[LINKED] = head
 
 
 @kernel
 def is_at_end(tie, side, bodies):  # type: ignore[no-untyped-def]
     """Whether body a (``side`` 0) or b of a tie is among these, and dynamic."""
-    body = integers(tie[CONSTRAINT], CONSTRAINT_WORDS)[CONSTRAINT_BODY_A + side]
-    return floats(body, BODY_WORDS)[MASS_INVERSE] > 0.0 and index_in(bodies, body) >= 0
+    return body_of(tie, side)[MASS_INVERSE] > 0.0 and index_in(bodies, address_of(tie, side)) >= 0
 
 
 @kernel
-def links_of(head):  # type: ignore[no-untyped-def]
+def all_links_of(head):  # type: ignore[no-untyped-def]
     """Where the rows of the constraints lie that go through a step's parts with a group."""
     t = views.control(head)
     notes = integers(t[at.NOTES], NOTES_WORDS)
@@ -178,10 +104,29 @@ def links_of(head):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def lift_links(links, bodies, pushes, ratio):  # type: ignore[no-untyped-def]
-    """Take what constraints have given in this step from bodies' changes of velocity; nothing is on from before.
+def links_of(head):  # type: ignore[no-untyped-def]
+    """Those of them that are between loose bodies: not the ties."""
+    links = all_links_of(head)
+    count = 0
+    for k in range(len(links)):
+        if not is_tie(integers(links[k], TIE_WORDS)):
+            links[count] = links[k]
+            count += 1
+    return links[:count]
 
-    Chipmunk has scaled what it applied of the last step's impulses by the ``ratio`` of the steps.
+
+@kernel
+def is_tie(link):  # type: ignore[no-untyped-def]
+    """Whether a constraint is at a body of a structure."""
+    return link[OWNER] != 0 or link[OWNER + 1] != 0
+
+
+@kernel
+def lift_links(links, bodies, pushes, ratio):  # type: ignore[no-untyped-def]
+    """Take back what constraints have given in this step; nothing is on from before.
+
+    That is from the changes of velocity of these loose bodies, and from the impulses of structures. Chipmunk has scaled
+    what it applied of the last step's impulses by the ``ratio`` of the steps.
     """
     total = np.empty(2)
     for k in range(len(links)):
@@ -190,9 +135,11 @@ def lift_links(links, bodies, pushes, ratio):  # type: ignore[no-untyped-def]
         for i in range(len(impulse)):
             total[i] = impulse[i] + (ratio - 1.0) * begun[i]
         for side in range(2):
-            i = index_in(bodies, integers(tie[CONSTRAINT], CONSTRAINT_WORDS)[CONSTRAINT_BODY_A + side])
+            i = index_in(bodies, address_of(tie, side))
             b = body_of(tie, side)
-            if i >= 0 and b[MASS_INVERSE] > 0.0:
+            if tie[OWNER + side] != 0:
+                book(tie, side, -1.0, total[: len(impulse)])
+            elif i >= 0 and b[MASS_INVERSE] > 0.0:
                 x, y, turn = given_by(tie, side, total[: len(impulse)])
                 pushes[i, 0] -= x / mass_of(b)
                 pushes[i, 1] -= y / mass_of(b)
@@ -201,12 +148,48 @@ def lift_links(links, bodies, pushes, ratio):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def book(tie, side, times, impulse):  # type: ignore[no-untyped-def]
+    """Book so many ``times`` an impulse of a tie for its structure's body a (``side`` 0) or b, as one from outside."""
+    external = views.per_body(views.control(tie[OWNER + side]), at.EXTERNAL)[tie[INDEX + side]]
+    x, y, turn = given_by(tie, side, impulse)
+    external[0] += times * x
+    external[1] += times * y
+    external[2] += times * turn
+
+
+@kernel
 def prepare_links(links, h, step):  # type: ignore[no-untyped-def]
     """Begin a part for these constraints, from no impulse: its move is of length ``h``, springs act for a ``step``."""
+    before = np.empty((2, 3))
     for k in range(len(links)):
         tie = integers(links[k], TIE_WORDS)
-        impulse_of(tie)[:] = 0.0
+        impulse = impulse_of(tie)
+        impulse[:] = 0.0
+        for side in range(2):
+            b = body_of(tie, side)
+            before[side, 0], before[side, 1], before[side, 2] = b[VX], b[VX + 1], b[SPIN]
         call_constraint(functions_of(tie)[_PRE_STEP], tie[CONSTRAINT], step if is_spring(tie) else h)
+        for side in range(2 if is_spring(tie) else 0):
+            if tie[OWNER + side] != 0:
+                b = body_of(tie, side)
+                b[VX], b[VX + 1], b[SPIN] = before[side, 0], before[side, 1], before[side, 2]
+                book(tie, side, 1.0, impulse)
+                t = views.control(tie[OWNER + side])
+                velocity, weight = views.per_body(t, at.VELOCITY)[tie[INDEX + side]], views.weight(t)[tie[INDEX + side]]
+                x, y, turn = given_by(tie, side, impulse)
+                velocity[0] += x * weight[INVERSE_M]
+                velocity[1] += y * weight[INVERSE_M]
+                velocity[2] += turn * weight[INVERSE_I]
+
+
+@kernel
+def let_go_of(links, ratio):  # type: ignore[no-untyped-def]
+    """Leave forces of the part that has ended, which are ``ratio`` times as much in the next one, without ties'."""
+    for k in range(len(links)):
+        tie = integers(links[k], TIE_WORDS)
+        for side in range(2):
+            if tie[OWNER + side] != 0:
+                book(tie, side, -ratio, impulse_of(tie))
 
 
 @kernel

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 
-from sim.chipmunk import BODY_WORDS, X
+from sim.chipmunk import BODY_WORDS, SPIN, VX, X
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
@@ -69,6 +69,20 @@ def carry_on(t, time):  # type: ignore[no-untyped-def]
         for axis in range(3):
             way[i, axis] = time * last[i, axis]
     shift_all(t, way)
+
+
+@kernel
+def go_with_support(t, time):  # type: ignore[no-untyped-def]
+    """Move the bodies for so long as the first support that moves takes them along, by which no joint is deformed."""
+    body_at = views.body_at(t)
+    for k in range(t[at.MOVING], t[at.BODIES]):
+        s = floats(body_at[k], BODY_WORDS)
+        if s[VX] != 0.0 or s[VX + 1] != 0.0 or s[SPIN] != 0.0:
+            for i in range(t[at.MOVING]):
+                b = floats(body_at[i], BODY_WORDS)
+                u, v = s[VX] - s[SPIN] * (b[X + 1] - s[X + 1]), s[VX + 1] + s[SPIN] * (b[X] - s[X])
+                move(body_at[i], time * u, time * v, time * s[SPIN])
+            return
 
 
 @kernel

@@ -50,9 +50,9 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.lengths import LONGEST_PART
-from sim.kernels.links import index_in
 from sim.kernels.noted import IN_PARTS, LOOSE_WORDS, ask
 from sim.kernels.owners import home, unite
+from sim.kernels.reached import index_in
 from sim.kernels.rows import own_velocity
 from sim.memory import floats, inlined, kernel
 

@@ -1,6 +1,6 @@
 """The bodies that move with a group of structures but are not solved with it: loose ones, and held ones that move.
 
-Loose ones are those that touch it, and what constraints tie to them, see `links`.
+Loose ones are those that touch it, and what constraints tie to it or to them, see `links`.
 
 A step taken in parts moves them along: they are found once, gathered by address, and put back in the end.
 """
@@ -21,8 +21,6 @@ from sim.chipmunk import (
     BIAS_VX,
     BODY_FULL_WORDS,
     BODY_WORDS,
-    CONSTRAINT_BODY_A,
-    CONSTRAINT_WORDS,
     CONTACT_NORMAL_MASS,
     CONTACT_WORDS,
     MASS_INVERSE,
@@ -34,10 +32,11 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import move, put
 from sim.kernels.layout import BODY_A, BODY_B, CACHED, OWNER_A, OWNER_B
-from sim.kernels.links import MOST_LINKED, index_in, reach
 from sim.kernels.moves import way_to_line
-from sim.kernels.noted import SPEED, note_struck
+from sim.kernels.noted import NOTES_WORDS, SPEED, TIES_COUNT, note_struck
+from sim.kernels.reached import MOST_LINKED, index_in, reach
 from sim.kernels.rows import push_loose
+from sim.kernels.ties import OWNER, TIE_WORDS, address_of, is_of, tie_at
 from sim.memory import floats, inlined, integers, kernel
 
 
@@ -46,7 +45,8 @@ def others_of(head):  # type: ignore[no-untyped-def]
     """Addresses of the bodies that move with a group's but are not solved with it: loose ones, and moving held ones."""
     linked = np.empty(MOST_LINKED, np.int64)
     links = reach(head, linked)
-    room, c = max(links, 0), head
+    notes = integers(views.control(head)[at.NOTES], NOTES_WORDS)
+    room, c = max(links, 0) + notes[TIES_COUNT], head
     while c != 0:
         t = views.control(c)
         room += t[at.CONTACTS] + t[at.BODIES] - t[at.MOVING]
@@ -65,6 +65,11 @@ def others_of(head):  # type: ignore[no-untyped-def]
         for i in range(t[at.MOVING], t[at.BODIES]):
             count = note(found, count, body_at[i])
         c = t[at.NEXT]
+    for k in range(notes[TIES_COUNT]):
+        tie = tie_at(notes, k)
+        for side in range(2):
+            if tie[OWNER + side] == 0 and is_of(tie, head):
+                count = note(found, count, address_of(tie, side))
     for i in range(links):
         count = note(found, count, linked[i])
     return found[:count]
@@ -99,14 +104,13 @@ def which(others, place):  # type: ignore[no-untyped-def]
 
 @kernel
 def mates_of(head, others, links):  # type: ignore[no-untyped-def]
-    """Those of them that a group touches, and that constraints link to these: dynamic ones."""
+    """Those of them that a group touches, and those at these constraints: dynamic ones."""
     mates, count = np.empty(len(others), np.int64), 0
     for i in range(len(others)):
         linked = False
         for k in range(len(links)):
             for side in range(2):
-                w = integers(integers(links[k], 1)[0], CONSTRAINT_WORDS)
-                linked = linked or w[CONSTRAINT_BODY_A + side] == others[i]
+                linked = linked or address_of(integers(links[k], TIE_WORDS), side) == others[i]
         if floats(others[i], BODY_WORDS)[MASS_INVERSE] > 0.0 and (linked or touched(head, others[i], 0)):
             mates[count] = others[i]
             count += 1

@@ -45,8 +45,15 @@ def owner_of(body, functions):  # type: ignore[no-untyped-def]
         w = integers(constraint, CONSTRAINT_WORDS)
         if 0 <= w[CONSTRAINT_CLASS] - functions <= CLASS_BYTES and w[CONTROL] != 0:
             return w[CONTROL]
-        constraint = w[CONSTRAINT_NEXT_A] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_NEXT_B]
+        constraint = next_at(constraint, body)
     return 0
+
+
+@kernel
+def next_at(constraint, body):  # type: ignore[no-untyped-def]
+    """The constraint after this one in a body's list."""
+    w = integers(constraint, CONSTRAINT_WORDS)
+    return w[CONSTRAINT_NEXT_A] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_NEXT_B]
 
 
 @inlined

@@ -57,10 +57,10 @@ def renew(t):  # type: ignore[no-untyped-def]
     """Weights and velocities at the start of a part of a step."""
     start, velocity = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.VELOCITY)
     body_at, weight = views.body_at(t), views.weight(t)
-    for i in range(t[at.BODIES]):
+    load_velocities(body_at, velocity)
+    for i in range(t[at.MOVING]):
         velocity[i, 0], velocity[i, 1], velocity[i, 2] = start[i, 0], start[i, 1], start[i, 2]
-        if i < t[at.MOVING]:
-            weigh(weight, i, floats(body_at[i], BODY_WORDS))
+        weigh(weight, i, floats(body_at[i], BODY_WORDS))
     add_inertia(t)
 
 

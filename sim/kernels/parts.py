@@ -57,8 +57,8 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.lengths import LONGEST_PART, averaged_lengths, part_lengths
-from sim.kernels.links import add_up, hand_back_sums, lift_links, link, links_of, prepare_links
-from sim.kernels.moves import carry_on
+from sim.kernels.links import add_up, all_links_of, hand_back_sums, let_go_of, lift_links, link, prepare_links
+from sim.kernels.moves import carry_on, go_with_support
 from sim.kernels.near import fall_behind, hand_over, let_go, look, stand_in
 from sim.kernels.newton import restart
 from sim.kernels.noted import BEGUN, note_given, note_last, note_parts, note_way, note_ways, row_of
@@ -82,11 +82,12 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
     """Take all parts of a step but the last one, and begin that; whether all of them converged."""
     others, leader = others_of(head), views.control(head)
     link(head, others)
-    links = links_of(head)
+    links = all_links_of(head)
     mates = mates_of(head, others, links)
     take_back(head)
     take_over_beside(head, mates)
     gather_beside(head, mates)
+    touching = touching or leader[at.CONTACTS] > 0
     # With what is held there, too.
     others = others_of(head)
     free = np.empty((len(others), 3))
@@ -137,12 +138,15 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
             c = t[at.NEXT]
         # In a whole step it would be so many times as much.
         lost += whole / h * end_part(head, others, before, pushes, moves[i + 1], steps[i + 1])
+        let_go_of(links, steps[i + 1] / steps[i])
         note_ways(rows, others, 0.5 * steps[i])
         grow_older(head, 0.0, h)
     if lost < OVER * whole * settings[BLOW] or is_over(head):
         forget(head)
     look(head)
     let_go(head, others, mates, pushes, begun, free, rows)
+    if averaged:
+        keep_to_supports(head, others, span - moves.sum())
     note_last(rows, others, steps[-1])
     begin_part(head, others, pushes)
     prepare_links(links, moves[-1], steps[-1])
@@ -177,6 +181,7 @@ def open_step(head, late, moves, steps):  # type: ignore[no-untyped-def]
         if settings[BETA] != 0.0 and settings[WANTED_BETA] == 0.0:
             if settings[BEFORE + BETA] != 0.0:
                 carry_on(t, 0.5 * (settings[STEP] - settings[MOVE]))
+                go_with_support(t, 0.5 * (settings[MOVE] - settings[STEP]))
             # Implicit Euler's velocities count as those with which such a part would have ended.
             settings[MOVE] = settings[STEP]
         renew(t)
@@ -192,6 +197,19 @@ def begin_schemes(head):  # type: ignore[no-untyped-def]
         averaged = choose_for_part(views.control(c), LONGEST_PART) and averaged
         c = views.control(c)[at.NEXT]
     return averaged
+
+
+@kernel
+def keep_to_supports(head, others, time):  # type: ignore[no-untyped-def]
+    """Have held bodies, and what stands on them, go on for so long: averaged parts move them a little too far."""
+    c = head
+    while c != 0:
+        go_with_support(views.control(c), time)
+        c = views.control(c)[at.NEXT]
+    for i in range(len(others)):
+        b = floats(others[i], BODY_WORDS)
+        if b[MASS_INVERSE] == 0.0:
+            move(others[i], time * b[VX], time * b[VX + 1], time * b[SPIN])
 
 
 @kernel
@@ -230,7 +248,7 @@ def close_step(head, t):  # type: ignore[no-untyped-def]
         while c != 0:
             views.control(c)[at.AHEAD] = 0
             c = views.control(c)[at.NEXT]
-        hand_back_sums(links_of(head))
+        hand_back_sums(all_links_of(head))
         for i in range(len(others)):
             b = floats(others[i], BODY_WORDS)
             if b[MASS_INVERSE] > 0.0:

@@ -130,6 +130,7 @@ def solve(c):  # type: ignore[no-untyped-def]
             touching = let_come(c) or touching
             keep(c)
             converged = take_parts(c, fresh, touching)
+            touching = touching or head[at.CONTACTS] > 0
         else:
             drop_all(c)
             if views.settings(head)[BLOW] > 0.0:

@@ -44,6 +44,7 @@ from sim.kernels.layout import (
     INVERSE_M,
     LEDGER_ELASTIC,
     LEDGER_KINETIC,
+    MOVE,
     STEP,
     UNDAMPED,
     WANTED_BETA,
@@ -55,6 +56,10 @@ from sim.memory import floats, inlined, kernel
 WORTH = 1e-2
 # Likewise, for impulses to be followed without damping.
 _MUCH = 0.25
+# Of the energy that a support's new velocity brings: what may move against it before.
+_STRAYED = 1e-2
+# Of a step.
+_ROUNDING = 1e-9
 
 
 @inlined
@@ -65,12 +70,14 @@ def sudden_energy(t, last_step):  # type: ignore[no-untyped-def]
     """
     settings, ledger = views.settings(t), views.ledger(t)
     energy, by_impulses = note_forces(t) if t[at.FORCED] == 1 else (0.0, 0.0)
+    t[at.JERKED] = 0
     by_supports = note_supports(t)
     whole = settings[WANTED_BETA] != 0.0 or settings[WHOLE_ONLY] != 0.0 or t[at.SPREAD] == 1
     if whole or settings[BLOW] > 0.0:
         return 0.0
     present = ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC]
-    settings[UNDAMPED] = AFTER_IMPULSES if by_impulses > _MUCH * present else AFTER_FORCES
+    at_once = max(by_impulses, by_supports if t[at.JERKED] == 1 else 0.0)
+    settings[UNDAMPED] = AFTER_IMPULSES if at_once > _MUCH * present else AFTER_FORCES
     enough = WORTH * present
     if energy > enough and t[at.FREE] == 1:
         enough += WORTH * energy
@@ -145,22 +152,32 @@ def note_forces(t):  # type: ignore[no-untyped-def]
 def note_supports(t):  # type: ignore[no-untyped-def]
     """Note how fast held bodies are carried along, by velocity or by hand.
 
-    Returns the most energy that it takes to have the structure follow the change [J].
+    Returns the most energy that it takes to have the structure follow the change [J]. What has gone with a support
+    until that was given another velocity can be taken back to then.
     """
     start, shift, force = views.per_body(t, at.START_VELOCITY), views.shift(t), views.per_body(t, at.LAST_FORCE)
+    last = views.per_body(t, at.LAST_VELOCITY)
     body_at, weight, h, most = views.body_at(t), views.weight(t), views.settings(t)[STEP], 0.0
     for k in range(t[at.MOVING], t[at.BODIES]):
         # What is held bears any force; its rows of forces hold velocities.
         x, y = start[k, 0] + shift[k, 3] / h, start[k, 1] + shift[k, 4] / h
         turn = start[k, 2] + shift[k, 5] / h
-        dx, dy, dw = x - force[k, 0], y - force[k, 1], turn - force[k, 2]
+        x0, y0, w0 = force[k, 0], force[k, 1], force[k, 2]
+        dx, dy, dw = x - x0, y - y0, turn - w0
         force[k, 0], force[k, 1], force[k, 2] = x, y, turn
         if dx == 0.0 and dy == 0.0 and dw == 0.0:
             continue
-        energy, centre = 0.0, floats(body_at[k], BODY_WORDS)
+        energy, strayed, centre = 0.0, 0.0, floats(body_at[k], BODY_WORDS)
         for i in range(t[at.MOVING]):
             b = floats(body_at[i], BODY_WORDS)
-            u, v = dx - dw * (b[X + 1] - centre[X + 1]), dy + dw * (b[X] - centre[X])
+            rx, ry = b[X] - centre[X], b[X + 1] - centre[X + 1]
+            u, v = dx - dw * ry, dy + dw * rx
             energy += 0.5 * (weight[i, INERTIA_M] * (u * u + v * v) + weight[i, INERTIA_I] * dw * dw)
+            u, v, w = last[i, 0] - x0 + w0 * ry, last[i, 1] - y0 - w0 * rx, last[i, 2] - w0
+            strayed += 0.5 * (weight[i, INERTIA_M] * (u * u + v * v) + weight[i, INERTIA_I] * w * w)
         most = max(most, energy)
+        by_hand = shift[k, 3] != 0.0 or shift[k, 4] != 0.0 or shift[k, 5] != 0.0
+        in_step = abs(views.settings(t)[MOVE] - h) <= _ROUNDING * h
+        if strayed <= _STRAYED * energy and in_step and not by_hand and t[at.AFTER_PARTS] == 0:
+            t[at.JERKED] = 1
     return most

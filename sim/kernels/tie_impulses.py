@@ -33,7 +33,7 @@ from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import STEP
 from sim.kernels.noted import NOTES_WORDS, TIES_COUNT
 from sim.kernels.overlap import MOST_SWEEPS
-from sim.kernels.ties import CONSTRAINT, INDEX, KIND, OWNER, body_of, is_of, ratio_of, slacken, tie_at, way_of
+from sim.kernels.ties import CONSTRAINT, INDEX, KIND, LINKED, OWNER, body_of, is_of, ratio_of, slacken, tie_at, way_of
 from sim.memory import call_constraint, floats, integers, kernel
 from sim.stock import (
     KIND_COEFFICIENT,
@@ -52,12 +52,16 @@ _AGREED = 1e-20
 
 @kernel
 def solve_ties(head):  # type: ignore[no-untyped-def]
-    """Solve a group's ties as it now stands; returns by how much their impulses changed, or `NOT_FINITE`."""
+    """Solve a group's ties as it now stands; returns by how much their impulses changed, or `NOT_FINITE`.
+
+    In parts of a step, links between what hangs on them have their turns, too.
+    """
     notes = integers(views.control(head)[at.NOTES], NOTES_WORDS)
-    which = np.empty(notes[TIES_COUNT], np.int64)
+    which, links = np.empty(notes[TIES_COUNT], np.int64), views.control(head)[at.PARTS] > 1
     count = 0
     for k in range(notes[TIES_COUNT]):
-        if is_of(tie_at(notes, k), head):
+        tie = tie_at(notes, k)
+        if is_of(tie, head) or (links and tie[LINKED] == head):
             which[count] = k
             count += 1
     which = which[:count]
@@ -81,7 +85,8 @@ def solve_ties(head):  # type: ignore[no-untyped-def]
         if not moved > _AGREED * size:
             break
     for k in range(count):
-        slacken(tie_at(notes, which[k]))
+        if is_of(tie_at(notes, which[k]), head):
+            slacken(tie_at(notes, which[k]))
     for p in range(len(ports)):
         t = views.control(ports[p, 0])
         give_velocity(t, ports[p, 1], views.per_body(t, at.WRITTEN))
@@ -148,21 +153,24 @@ def give_velocity(t, i, velocity):  # type: ignore[no-untyped-def]
 
 @kernel
 def tighten(tie, ends, c, h, yielding):  # type: ignore[no-untyped-def]
-    """Give a tie the effective mass that it has through the structure; K is noted in ``yielding``, row by row."""
+    """Give a tie the effective mass that it has through the structure; K is noted in ``yielding``, row by row.
+
+    That of a link between loose bodies it has already.
+    """
     kind = integers(tie[KIND], KIND_WORDS)
     numbers = floats(tie[CONSTRAINT], max(kind[KIND_MASS] + 4, kind[KIND_COEFFICIENT] + 1, kind[KIND_DAMPING] + 1))
-    mass = kind[KIND_MASS]
+    mass, through = kind[KIND_MASS], ends[0] >= 0 or ends[1] >= 0
     if kind[KIND_WAY] == POINT:
         for row in range(2):
             for column in range(2):
                 yielding[2 * row + column] = yields(tie, ends, c, row, column)
         determinant = yielding[0] * yielding[3] - yielding[1] * yielding[2]
-        if determinant > 0.0:
+        if through and determinant > 0.0:
             numbers[mass], numbers[mass + 3] = yielding[3] / determinant, yielding[0] / determinant
             numbers[mass + 1], numbers[mass + 2] = -yielding[1] / determinant, -yielding[2] / determinant
         return
     yielding[0] = yields(tie, ends, c, 0, 0)
-    if yielding[0] > 0.0:
+    if through and yielding[0] > 0.0:
         numbers[mass] = 1.0 / yielding[0]
         if kind[KIND_COEFFICIENT] != 0:
             numbers[kind[KIND_COEFFICIENT]] = -math.expm1(-numbers[kind[KIND_DAMPING]] * h * yielding[0])

@@ -10,10 +10,13 @@ by then, which is no impulse that somebody gave the body before the step.
 """
 
 from sim.chipmunk import (
+    BODY_FULL_WORDS,
     BODY_WORDS,
     CONSTRAINT_BODY_A,
+    CONSTRAINT_BODY_B,
     CONSTRAINT_CLASS,
     CONSTRAINT_WORDS,
+    CONSTRAINTS,
     MASS_INVERSE,
     MOMENT_INVERSE,
     SPIN,
@@ -23,7 +26,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
 from sim.kernels.noted import BOUND, KINDS, KINDS_COUNT, NOTES_WORDS, STAMP, TIES, TIES_COUNT
-from sim.kernels.owners import constraints_with, find, home, unite
+from sim.kernels.owners import constraints_with, find, home, next_at, unite
 from sim.memory import floats, integers, kernel
 from sim.stock import (
     KIND_ARMS,
@@ -31,6 +34,7 @@ from sim.stock import (
     KIND_CLASS,
     KIND_COEFFICIENT,
     KIND_COUNT,
+    KIND_HOLDS,
     KIND_IMPULSE,
     KIND_MASS,
     KIND_RATIO,
@@ -43,9 +47,10 @@ from sim.stock import (
 
 #: A tie's row: its address, its place in Chipmunk's list and the row of its kind (0: none); for each of its two bodies
 #: the control table of the structure that it belongs to (0: none) and its index there; velocities of both when it
-#: was solved last; its impulse at the step's start, then that of the step's earlier parts; and the control table that
-#: acts for the group through whose parts it goes without being at any of its bodies (0: none), see `links`.
-CONSTRAINT, PLACE, KIND, OWNER, INDEX, SEEN, SUM, LINKED, TIE_WORDS = 0, 1, 2, 3, 5, 7, 13, 15, 16
+#: was solved last; its impulse at the step's start, then that of the step's earlier parts; the control table that acts
+#: for the group through whose parts it goes (0: none), see `links`; and how long ago it began to give a blow, see
+#: `tie_blows`, below 0 if it gives none.
+CONSTRAINT, PLACE, KIND, OWNER, INDEX, SEEN, SUM, LINKED, LATE, TIE_WORDS = 0, 1, 2, 3, 5, 7, 13, 15, 16, 17
 
 
 @kernel
@@ -69,9 +74,10 @@ def tie_at(notes, k):  # type: ignore[no-untyped-def]
 def lift_springs(t, sign):  # type: ignore[no-untyped-def]
     """Take the impulses that springs have given to bodies in this step from these (-1), or put them back (1).
 
-    Also keeps Chipmunk's first iteration from solving a structure's ties. Where there is no stock constraint, there is
-    nothing to do.
+    Also keeps Chipmunk's first iteration from solving a structure's ties, and notes whether any holds it. Where there
+    is no stock constraint, there is nothing to do.
     """
+    t[at.PINNED] = 0
     if t[at.NOTES] == 0:
         return
     notes, own = integers(t[at.NOTES], NOTES_WORDS), -1
@@ -83,6 +89,8 @@ def lift_springs(t, sign):  # type: ignore[no-untyped-def]
         for side in range(2):
             if 0 <= find(t, w[CONSTRAINT_BODY_A + side]) < t[at.MOVING]:
                 slacken(tie)
+                if integers(tie[KIND], KIND_WORDS)[KIND_HOLDS] == 1 and body_of(tie, 1 - side)[MASS_INVERSE] == 0.0:
+                    t[at.PINNED] = 1
         if not is_spring(tie):
             continue
         if own < 0:
@@ -170,7 +178,7 @@ def slacken(tie):  # type: ignore[no-untyped-def]
 def bind(c, t):  # type: ignore[no-untyped-def]
     """Before the first solve of a step: find out whose bodies the ties of the space are at.
 
-    Structures that one leads to from another are solved as one.
+    Structures that one leads to from another, or two by way of a loose body, are solved as one.
     """
     if t[at.NOTES] == 0:
         return
@@ -201,20 +209,46 @@ def bind(c, t):  # type: ignore[no-untyped-def]
                     clear(views.per_body(t, at.CONTACT_IMPULSE))
         if one != 0 and other != 0 and one != other:
             unite(one, other)
+        for side in range(2):
+            if tie[OWNER + side] == 0 and body_of(tie, side)[MASS_INVERSE] > 0.0:
+                unite_at(w[CONSTRAINT_BODY_A + side], one + other)
+
+
+@kernel
+def unite_at(body, owner):  # type: ignore[no-untyped-def]
+    """Have structures that ties lead to from a loose body solved as one with ``owner``."""
+    constraint = integers(body, BODY_FULL_WORDS)[CONSTRAINTS]
+    while constraint != 0:
+        w = integers(constraint, CONSTRAINT_WORDS)
+        another, _ = home(owner, w[CONSTRAINT_BODY_B] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_BODY_A])
+        if another != 0 and another != owner:
+            unite(owner, another)
+        constraint = next_at(constraint, body)
 
 
 @kernel
 def is_of(tie, head):  # type: ignore[no-untyped-def]
     """Whether a tie is at a body of a group of structures."""
     owner = tie[OWNER] if tie[OWNER] != 0 else tie[OWNER + 1]
-    return tie[KIND] != 0 and owner != 0 and (owner == head or views.control(owner)[at.HEAD] == head)
+    return tie[KIND] != 0 and owner != 0 and is_one_of(owner, head)
+
+
+@kernel
+def is_one_of(owner, head):  # type: ignore[no-untyped-def]
+    """Whether a structure is of a group."""
+    return owner == head or views.control(owner)[at.HEAD] == head
+
+
+@kernel
+def address_of(tie, side):  # type: ignore[no-untyped-def]
+    """Where body a (``side`` 0) or b of a tie lies."""
+    return integers(tie[CONSTRAINT], CONSTRAINT_WORDS)[CONSTRAINT_BODY_A + side]
 
 
 @kernel
 def body_of(tie, side):  # type: ignore[no-untyped-def]
     """Body a (``side`` 0) or b of a tie."""
-    body = integers(tie[CONSTRAINT], CONSTRAINT_WORDS)[CONSTRAINT_BODY_A + side]
-    return floats(body, BODY_WORDS)
+    return floats(address_of(tie, side), BODY_WORDS)
 
 
 @kernel

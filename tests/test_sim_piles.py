@@ -2,7 +2,7 @@
 
 import pymunk
 import pytest
-from piles import DEPTH, beam, box
+from piles import DEPTH, beam, box, boxes
 
 
 def test_what_overlaps_a_held_structure_moves_out_of_it_alone() -> None:
@@ -25,3 +25,18 @@ def test_what_overlaps_a_held_structure_moves_out_of_it_alone() -> None:
     after = structure.structure.energy
     assert after.elastic + after.plastic < before.elastic + before.plastic + 1.0
     assert wedge.position.y == pytest.approx(-0.5 * DEPTH - 0.5 * 0.4, abs=2e-3)
+
+
+@pytest.mark.parametrize("pieces", [10, 20])
+def test_boxes_that_fall_on_a_beam_come_to_rest_in_a_pile(pieces: int) -> None:
+    """They end within a millimetre a second, as on a floor that stands."""
+    space = pymunk.Space()
+    space.gravity, space.collision_slop = (0.0, -9.81), 1e-3
+    joint = beam(space, pieces)[0]
+    pile, fastest = boxes(space, 18, seed=2), []
+    for _ in range(180):
+        space.step(1 / 60)
+        fastest.append(max(body.velocity.length for body in pile))
+    assert max(fastest[-30:]) < 1e-3
+    assert joint.structure is not None
+    assert joint.structure.unconverged == 0

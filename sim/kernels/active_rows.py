@@ -23,6 +23,9 @@ from sim.memory import floats, kernel
 _LEAST, _GROWTH = 0.02, 2.0
 # Of the limit of friction: nearer to it a contact slides.
 _SLIDES = 1e-9
+# Of a row's own g, by which its impulse resists change: what contacts may share out in more than one way, as several
+# points of two bodies do, stays as sweeps have left it.
+_RESISTS = 1e-10
 # Of the largest number on its diagonal: a matrix with less has no inverse.
 _SINGULAR = 1e-13
 
@@ -72,6 +75,7 @@ def solve_directly(places, touches, g, v, change):  # type: ignore[no-untyped-de
         for j in range(count):
             k = index[j]
             matrix[i, j] = g[r, k] + (follows[k] * g[r, k + 1] if k & 1 == 0 else 0.0)
+        matrix[i, i] += _RESISTS * g[r, r]
     if not eliminate(matrix, x):
         return
     step = np.zeros(rows)

@@ -5,6 +5,7 @@ structure would spend a quarter of its time on that. The rows of a bare one lie 
 """
 
 import operator
+from collections.abc import Callable
 from typing import Any
 
 from numba import types
@@ -12,6 +13,7 @@ from numba.core import cgutils
 from numba.core.typing import signature
 from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import intrinsic, lower_builtin, models, register_model
+from numba.np.arrayobj import make_array
 
 from sim.memory import WORD
 
@@ -96,6 +98,31 @@ def _set(context: Any, builder: Any, signature: Any, args: Any) -> Any:
 @lower_builtin(len, Bare)  # type: ignore[untyped-decorator]
 def _length(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     return cgutils.create_struct_proxy(signature.args[0])(context, builder, args[0]).count
+
+
+def rows_of(columns: int) -> Callable[..., Any]:
+    """A function that gives a bare array over a numpy array with so many columns; `hold` keeps that until then."""
+
+    @intrinsic
+    def bare(typing_context, array):  # type: ignore[no-untyped-def]
+        def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+            own = make_array(signature.args[0])(context, builder, args[0])
+            count = builder.extract_value(own.shape, 0)
+            return bare_at(context, builder, signature.return_type, own.data, count)
+
+        return Bare(array.dtype, columns)(array), generate
+
+    return bare  # type: ignore[no-any-return]
+
+
+@intrinsic
+def hold(typing_context, one, other):  # type: ignore[no-untyped-def]
+    """Keep the memory of two numpy arrays until here, for bare arrays over it."""
+
+    def generate(context, builder, signature, args):  # type: ignore[no-untyped-def]
+        return context.get_dummy_value()
+
+    return types.void(one, other), generate
 
 
 @intrinsic

@@ -24,7 +24,7 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.active_rows import relax, solve_directly
-from sim.kernels.bare import clear
+from sim.kernels.bare import clear, hold, rows_of
 from sim.kernels.blocks import factorise_matrix, solve
 from sim.kernels.layout import (
     FAR,
@@ -42,17 +42,23 @@ from sim.kernels.layout import (
     WHERE,
 )
 from sim.kernels.links import links_of, pull
-from sim.kernels.overlap import MOST_SWEEPS, push_apart
+from sim.kernels.overlap import push_apart
 from sim.kernels.residual import descend, reach_of
 from sim.kernels.rows import add_row, loose_velocity, move_loose, own_velocity, push_loose, sum_up
 from sim.memory import floats, kernel
 
+#: Bare arrays over those that `gather_contacts` gives.
+bare_places, bare_touches = rows_of(at.PLACE_WORDS), rows_of(at.TOUCH_WORDS)
 #: What `touch` gives when an impulse is not a number: nothing was changed then.
 NOT_FINITE = -1.0
 # Constraints of loose bodies agree once a sweep changes so much of what one did at the most, as energies, or of all.
 _AGREED, _STILL = 1e-10, 1e-20
-# How many times sweeps are tried, and rows solved directly in between.
-_MOST_DIRECT = 4
+# How many times sweeps are tried, so many at a time, with rows solved directly in between; and most sweeps where
+# constraints take part in them.
+_MOST_DIRECT, _SWEEPS, _WITH_LINKS = 16, 50, 200
+# Sweeps that become shorter by less than this go on for long, and are left where the energy of what is still to come,
+# as a share of all, is no more than that.
+_SLOW, _LITTLE = 0.9, 1e-12
 
 
 @kernel
@@ -96,6 +102,14 @@ def touch(head, last):  # type: ignore[no-untyped-def]
     With what is in ``last``, see `relax`, they may be changed by less than that.
     """
     places, touches = gather_contacts(head)
+    largest = touch_all(head, last, bare_places(places), bare_touches(touches))
+    hold(places, touches)
+    return largest
+
+
+@kernel
+def touch_all(head, last, places, touches):  # type: ignore[no-untyped-def]
+    """The same for these contacts."""
     count = len(places)
     factorise_group(head)
     g = operator(places, touches)
@@ -145,7 +159,7 @@ def relative(place, touch, row):  # type: ignore[no-untyped-def]
 
 @kernel
 def operator(places, touches):  # type: ignore[no-untyped-def]
-    """G for all contacts, by one substitution a column and structure."""
+    """G for all contacts, row by row, for it is symmetric: by one substitution a row and structure."""
     rows = 2 * len(places)
     g = np.zeros((rows, rows))
     for k in range(rows):
@@ -166,8 +180,8 @@ def operator(places, touches):  # type: ignore[no-untyped-def]
                 first = min(first, place[INDEX_B])
             solve(t, first, solution)
             for r in range(rows):
-                g[r, k] += own_velocity(c, places[r >> 1], touches[r >> 1], r, solution)
-        move_loose(places, touches, k, g[:, k])
+                g[k, r] += own_velocity(c, places[r >> 1], touches[r >> 1], r, solution)
+        move_loose(places, touches, k, g[k])
     return g
 
 
@@ -197,8 +211,8 @@ def complement(head, places, touches, g, v, change):  # type: ignore[no-untyped-
 @kernel
 def sweep(head, links, places, touches, g, v, change, pushed):  # type: ignore[no-untyped-def]
     """Projected Gauss–Seidel on G, from the accumulated impulses on; whether they agree in the end."""
-    rows, h, most = len(v), views.settings(views.control(head))[STEP], 0.0
-    for _ in range(MOST_SWEEPS):
+    rows, h, most, before = len(v), views.settings(views.control(head))[STEP], 0.0, math.inf
+    for _ in range(_WITH_LINKS if len(links) > 0 else _SWEEPS):
         moved, size, agreed = 0.0, 0.0, True
         for r in range(rows):
             if g[r, r] <= 0.0:
@@ -220,7 +234,7 @@ def sweep(head, links, places, touches, g, v, change, pushed):  # type: ignore[n
                 moved = max(moved, abs(step))
                 change[r] += step
                 for k in range(rows):
-                    v[k] += g[k, r] * step
+                    v[k] += g[r, k] * step
         if len(links) > 0:
             give(places, touches, change, pushed)
             of_change, of_all = pull_all(links, h, places, touches, v)
@@ -228,6 +242,9 @@ def sweep(head, links, places, touches, g, v, change, pushed):  # type: ignore[n
             agreed = of_change <= _AGREED * most + _STILL * of_all
         if moved <= 1e-10 * size and agreed:
             return True
+        if agreed and moved > _SLOW * before and moved * moved <= _LITTLE * size * size * (1.0 - moved / before):
+            return True
+        before = moved
     return False
 
 

@@ -9,8 +9,9 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.admissible import bear_no_more
 from sim.kernels.approach import iterate
+from sim.kernels.bare import hold
 from sim.kernels.commit import weaken
-from sim.kernels.complement import NOT_FINITE, count_contacts, gather_contacts, touch
+from sim.kernels.complement import NOT_FINITE, bare_places, bare_touches, count_contacts, gather_contacts, touch
 from sim.kernels.layout import CACHED, INERTIA_I, INERTIA_M, WHERE
 from sim.kernels.restitution import MOST_HALVINGS, bounce_less, bounces, creates_energy
 from sim.kernels.rows import sum_up
@@ -102,12 +103,13 @@ def book_cached(c):  # type: ignore[no-untyped-def]
         t = views.control(member)
         solution = views.per_body(t, at.SOLUTION)
         external, struck = views.per_body(t, at.EXTERNAL), views.per_body(t, at.CONTACT_IMPULSE)
-        sum_up(member, places, touches, amounts, solution)
+        sum_up(member, bare_places(places), bare_touches(touches), amounts, solution)
         for i in range(t[at.MOVING]):
             for axis in range(3):
                 struck[i, axis] += solution[i, axis]
                 external[i, axis] -= solution[i, axis]
         member = t[at.NEXT]
+    hold(places, touches)
 
 
 @kernel

@@ -32,7 +32,6 @@ from sim.kernels.complement import NOT_FINITE, factorise_group, transmit
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import STEP
 from sim.kernels.noted import NOTES_WORDS, TIES_COUNT
-from sim.kernels.overlap import MOST_SWEEPS
 from sim.kernels.ties import CONSTRAINT, INDEX, KIND, LINKED, OWNER, body_of, is_of, ratio_of, slacken, tie_at, way_of
 from sim.memory import call_constraint, floats, integers, kernel
 from sim.stock import (
@@ -47,7 +46,7 @@ from sim.stock import (
 
 _APPLY_IMPULSE = 2
 # Of the impulses' energy.
-_AGREED = 1e-20
+_AGREED, _MOST_SWEEPS = 1e-20, 200
 
 
 @kernel
@@ -75,7 +74,7 @@ def solve_ties(head):  # type: ignore[no-untyped-def]
         t = views.control(ports[p, 0])
         give_velocity(t, ports[p, 1], views.per_body(t, at.VELOCITY))
     given, change = np.zeros((len(ports), 3)), 0.0
-    for _ in range(MOST_SWEEPS):
+    for _ in range(_MOST_SWEEPS):
         moved, size = 0.0, 0.0
         for k in range(count):
             tie = tie_at(notes, which[k])

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from test_sim_world import run
+from whole_runs import whole_run
 
 from fem_reference import pushover
 from scene import builtin_text, load_scene, parse_scene
@@ -168,7 +169,7 @@ def test_the_gate_yields_at_its_foot_first_and_takes_the_lorry_s_energy(dt: floa
 
 
 def test_demolisher_crosses_the_bridge_and_is_stopped_by_the_barrier() -> None:
-    _, found = run("demolisher")
+    found = whole_run("demolisher")[0].results()
     assert found["joints of the bridge that own weight makes yield"] == 2.0
     assert found["joints of the bridge that yielded"] == 3.0
     assert found["capacity used of the bridge"] == pytest.approx(0.006, rel=0.1)

@@ -57,10 +57,9 @@ def succeed(
             tables[at.DEFORMATION][joint.index] = heir.result[:3]
     # Pieces were put to where velocities alone lead on.
     tables[at.LAST_POSITION][:] = np.nan
-    tables.control[[at.PARTS, at.SHIFTED]] = 1, 0
+    tables.control[at.SHIFTED] = 0
     tables[at.SETTINGS][:] = before[at.SETTINGS]
-    tables[at.SETTINGS][[at.STEP, at.NEXT_MOVE]] = before[at.SETTINGS][at.WHOLE_STEP]
-    for count in (at.NEWTON_STEPS, at.UNCONVERGED):
+    for count in (at.PARTS, at.NEWTON_STEPS, at.UNCONVERGED):
         tables.control[count] = before.control[count]
     # What bore on pieces that are new is not known, and not sudden.
     tables[at.LAST_FORCE][[body not in old.bodies for body in new.bodies]] = np.nan

@@ -96,6 +96,20 @@ def test_a_refined_structure_swings_on_with_its_energy() -> None:
     assert assembly.structure.unconverged == 0
 
 
+@pytest.mark.parametrize("steps", [15, 20, 25])
+def test_a_structure_that_is_refined_in_parts_of_a_step_goes_on_where_it_was(steps: int) -> None:
+    """It loses no more in the steps that follow than by the little damping of those parts, and gains nothing."""
+    model = Model("lobatto", 7, "elastic-plastic", refine_at=math.inf)
+    assembly = moving(portal("clamped", "pinned"), model, steps)
+    assert assembly.structure.tables.control[PARTS] > 1
+    energy = assembly.structure.energy
+    assembly.refine(["A-B", "B-C", "C-D"])
+    for _ in range(3):
+        assembly.step(STEP)
+        now = assembly.structure.energy
+        assert 0.985 * (energy.kinetic + energy.elastic) <= now.kinetic + now.elastic <= energy.kinetic + energy.elastic
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_a_cantilever_that_starts_coarse_is_pushed_like_a_fine_one(law: str) -> None:
     """Within two ten-thousandths of the largest load; one that stays coarse errs by more where fibres yield.

@@ -111,7 +111,7 @@ class Surroundings:
         for k, (own, other) in enumerate(self._pairs):
             if not boxes[own, 0].intersects(boxes[other, 1]):
                 continue
-            (nx, ny), points = self._nearest(own, other)
+            (nx, ny), points = self._nearest(own, other, _IN_LINE * float(touches[_POINTS * k, at.REACH]))
             ux, uy = np.subtract(other.surface_velocity, own.surface_velocity).tolist()
             (x, y), (u, v) = centres[own], centres[other]
             for touch, (ax, ay, bx, by) in zip(touches[_POINTS * k :], points, strict=False):
@@ -123,15 +123,14 @@ class Surroundings:
         pass_inner_edges(shapes, tables[at.PLACES][first : first + count], touches)
 
     def _nearest(
-        self, own: pymunk.Shape, other: pymunk.Shape
+        self, own: pymunk.Shape, other: pymunk.Shape, enough: float
     ) -> tuple[tuple[float, float], list[tuple[float, float, float, float]]]:
         """As `nearest_points`, which takes a corner for its edge where another lies right in line with that.
 
-        Points that do not face each other tell. So the other shape is moved out of line, by next to nothing.
+        Points that do not face each other tell. So the other shape is moved out of line by next to nothing, ``enough``.
         """
         one, two = self._copies[own, 0], self._copies[other, 1]
         normal, points = shape_copies.nearest_points(one, two)
-        enough = _IN_LINE * _extent(own)[1]
         if _face(normal, points, enough):
             return normal, points
         assert other.body is not None

@@ -24,17 +24,25 @@ _MORE = 1e-9
 
 
 @kernel
-def bear_no_more(t):  # type: ignore[no-untyped-def]
-    """Bring impulses of joints that are outside their yield surfaces back to them."""
+def bear_no_more(t, measured):  # type: ignore[no-untyped-def]
+    """Bring impulses of joints that are outside their yield surfaces back to them.
+
+    What the law gives is not: where residuals are ``measured``, joints with hardly any are inside.
+    """
     joint_bodies, gradient, velocity = views.joint_bodies(t), views.gradient(t), views.per_body(t, at.VELOCITY)
     active, laws, stiffness, scale = views.active(t), views.laws(t), views.stiffness(t), views.scale(t)
     impulse, damping, deformation = views.per_joint(t, at.IMPULSE), views.damping(t), views.per_joint(t, at.DEFORMATION)
     less, h, reach, any_outside = views.per_joint(t, at.RESIDUAL), views.settings(t)[STEP], reach_of(t), False
+    lightness = views.per_joint(t, at.LIGHTNESS)
     q, trial, scratch = t[at.SCRATCH] + 8 * SCRATCH_Q, t[at.SCRATCH] + 8 * SCRATCH_STATE, t[at.SCRATCH]
     place, force, flow = floats(q, 3), floats(scratch, RESPONSE_WORDS), floats(scratch, COMMIT_WORDS)
     for k in range(t[at.JOINTS]):
-        less[k, 0], less[k, 1], less[k, 2] = 0.0, 0.0, 0.0
-        if active[k] == 0 or scale[k] <= 0.0:
+        error, size = 0.0, 0.0
+        for i in range(3):
+            error += lightness[k, i] * less[k, i] * less[k, i]
+            size += lightness[k, i] * impulse[k, i] * impulse[k, i]
+            less[k, i] = 0.0
+        if active[k] == 0 or scale[k] <= 0.0 or (measured and error <= _MORE * _MORE * size):
             continue
         x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         place[0], place[1] = deformation[k, 0] + reach * x, deformation[k, 1] + reach * y

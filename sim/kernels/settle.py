@@ -78,7 +78,7 @@ def settle_bounces(c, fresh, touching):  # type: ignore[no-untyped-def]
     while member != 0:
         t = views.control(member)
         if _ROUNDING < views.settings(t)[at.LAST_RESIDUAL] < math.inf and t[at.SPREAD] == 0:
-            bear_no_more(t)
+            bear_no_more(t, not (touching or t[at.TIED] > 0))
         member = t[at.NEXT]
     return converged
 

@@ -42,6 +42,13 @@ def member(
     return bodies, joints
 
 
+def cantilever(space: pymunk.Space) -> tuple[list[pymunk.Body], list[DuctileJoint]]:
+    """A metre in six pieces from a wall at the origin on."""
+    bodies, joints = member(space, (0.0, 0.0), (1.0, 0.0), 6)
+    joints.append(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), joints[0].law, direction=0.0))
+    return bodies, joints
+
+
 def beam_on_pivots(space: pymunk.Space, speed: float = 0.0) -> tuple[list[pymunk.Body], list[DuctileJoint]]:
     """A beam of 2 m in eight pieces, one end on a pivot of pymunk's and the other in a groove; all move downwards."""
     bodies, joints = member(space, (0.0, 0.0), (2.0, 0.0), 8)
@@ -129,8 +136,7 @@ def portal_on_pivots(rate: int, iterations: int) -> tuple[float, float]:
 def struck_on_spring(rate: int, iterations: int) -> tuple[float, float]:
     """Peak way of the tip [m] and plastic work [J] of a cantilever on a damped spring that 100 kg fall on by 1 m."""
     space = new_space(iterations)
-    bodies, joints = member(space, (0.0, 0.0), (1.0, 0.0), 6)
-    joints.append(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), joints[0].law, direction=0.0))
+    bodies, joints = cantilever(space)
     tip = bodies[-1]
     spring = pymunk.DampedSpring(space.static_body, tip, (0.9, -1.0), (0.0, 0.0), 1.0, 3e4, 300.0)
     space.add(spring, *joints)
@@ -155,8 +161,7 @@ def bar_on_springs(rate: int, iterations: int) -> tuple[float, float]:
 def kicked_on_pivot(rate: int, iterations: int) -> tuple[float, float]:
     """A body of 100 kg that a pivot hangs on a cantilever's tip is set going at 5 m/s downwards."""
     space = new_space(iterations)
-    bodies, joints = member(space, (0.0, 0.0), (1.0, 0.0), 6)
-    joints.append(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), joints[0].law, direction=0.0))
+    bodies, joints = cantilever(space)
     load = pymunk.Body(100.0, 1.0)
     load.position = (1.0, -0.2)
     space.add(load, pymunk.PivotJoint(bodies[-1], load, (1.0, 0.0)), *joints)
@@ -167,8 +172,7 @@ def kicked_on_pivot(rate: int, iterations: int) -> tuple[float, float]:
 def caught_by_rope(rate: int, iterations: int) -> tuple[float, float]:
     """100 kg fall by 1 m and are caught by a rope (a slide joint) at a cantilever's tip."""
     space = new_space(iterations)
-    bodies, joints = member(space, (0.0, 0.0), (1.0, 0.0), 6)
-    joints.append(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), joints[0].law, direction=0.0))
+    bodies, joints = cantilever(space)
     load = pymunk.Body(100.0, 1.0)
     load.position = (bodies[-1].position.x, -0.5)
     space.add(load, pymunk.SlideJoint(bodies[-1], load, (0.0, 0.0), (0.0, 0.0), 0.0, 1.5), *joints)
@@ -191,8 +195,7 @@ def struck_together(rate: int, iterations: int) -> tuple[float]:
 def struck_with_load(rate: int, iterations: int) -> tuple[float, float]:
     """A cantilever from which 50 kg hang on a spring; 50 kg fall on it by 1 m."""
     space = new_space(iterations)
-    bodies, joints = member(space, (0.0, 0.0), (1.0, 0.0), 6)
-    joints.append(DuctileJoint(space.static_body, bodies[0], (0.0, 0.0), joints[0].law, direction=0.0))
+    bodies, joints = cantilever(space)
     load = pymunk.Body(50.0, 1.0)
     load.position = (bodies[-1].position.x, -0.5)
     space.add(load, pymunk.DampedSpring(bodies[-1], load, (0.0, 0.0), (0.0, 0.0), 0.45, 1e4, 200.0), *joints)

@@ -15,8 +15,6 @@ from sim.chipmunk import (
     ARBITER_BODY_B,
     ARBITER_CONTACTS,
     ARBITER_COUNT,
-    ARBITER_NEXT_A,
-    ARBITER_NEXT_B,
     ARBITER_STATE,
     ARBITER_WORDS,
     ARBITERS,
@@ -53,6 +51,7 @@ from sim.kernels.layout import (
 )
 from sim.kernels.links import is_tie
 from sim.kernels.noted import LOOSE_WORDS, MATE, NOTES_WORDS, ask, row_of, row_of_contact
+from sim.kernels.owners import next_arbiter
 from sim.kernels.reached import index_in
 from sim.kernels.rows import loose_velocity, push_loose
 from sim.kernels.tie_blows import catches
@@ -104,7 +103,7 @@ def sweep(head, mates, taking):  # type: ignore[no-untyped-def]
                         take(t, arbiter, where, place, touch)
                         place[INDEX_A], place[INDEX_B] = (i, j) if is_a else (j, i)
                     count += 1
-            arbiter = w[ARBITER_NEXT_A] if is_a else w[ARBITER_NEXT_B]
+            arbiter = next_arbiter(arbiter, mates[i])
     return count
 
 

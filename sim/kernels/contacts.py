@@ -17,8 +17,6 @@ from sim.chipmunk import (
     ARBITER_CONTACTS,
     ARBITER_COUNT,
     ARBITER_FRICTION,
-    ARBITER_NEXT_A,
-    ARBITER_NEXT_B,
     ARBITER_NORMAL,
     ARBITER_STATE,
     ARBITER_SURFACE,
@@ -75,7 +73,7 @@ from sim.kernels.layout import (
     WANTED,
     WHERE,
 )
-from sim.kernels.owners import home, unite
+from sim.kernels.owners import home, next_arbiter, unite
 from sim.kernels.rows import other_velocity, own_velocity
 from sim.memory import floats, integers, kernel
 
@@ -135,7 +133,7 @@ def collect(c, t):  # type: ignore[no-untyped-def]
                     continue
                 seize(contact, touch)
                 count += 1
-            arbiter = w[ARBITER_NEXT_A] if is_a else w[ARBITER_NEXT_B]
+            arbiter = next_arbiter(arbiter, own)
     arrange(places, touches, count)
     t[at.CONTACTS], t[at.MISSED] = count, missed
     if looking:
@@ -197,7 +195,7 @@ def came_from_elsewhere(c, t, place, touch, slop):  # type: ignore[no-untyped-de
         w = integers(arbiter, ARBITER_WORDS)
         if w[ARBITER_STATE] & 0xFFFFFFFF != FIRST:
             return False
-        arbiter = w[ARBITER_NEXT_A] if w[ARBITER_BODY_A] == body else w[ARBITER_NEXT_B]
+        arbiter = next_arbiter(arbiter, body)
     return True
 
 

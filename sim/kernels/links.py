@@ -12,7 +12,6 @@ import math
 import numpy as np
 
 from sim.chipmunk import (
-    CONSTRAINT_CLASS,
     CONSTRAINT_MAX_FORCE,
     CONSTRAINT_WORDS,
     MASS_INVERSE,
@@ -26,15 +25,18 @@ from sim.kernels.layout import INVERSE_I, INVERSE_M
 from sim.kernels.noted import NOTES_WORDS, TIES, TIES_COUNT, UNDER_WAY
 from sim.kernels.reached import index_in
 from sim.kernels.ties import (
+    APPLY_IMPULSE,
     CONSTRAINT,
     INDEX,
     KIND,
     LINKED,
     OWNER,
+    PRE_STEP,
     SUM,
     TIE_WORDS,
     address_of,
     body_of,
+    call_for,
     given_by,
     impulse_of,
     is_of,
@@ -42,9 +44,7 @@ from sim.kernels.ties import (
     slacken,
     tie_at,
 )
-from sim.memory import call_constraint, floats, integers, kernel
-
-_PRE_STEP, _APPLY_IMPULSE = 0, 2
+from sim.memory import floats, integers, kernel
 
 
 @kernel
@@ -168,7 +168,7 @@ def prepare_links(links, h, step):  # type: ignore[no-untyped-def]
         for side in range(2):
             b = body_of(tie, side)
             before[side, 0], before[side, 1], before[side, 2] = b[VX], b[VX + 1], b[SPIN]
-        call_constraint(functions_of(tie)[_PRE_STEP], tie[CONSTRAINT], step if is_spring(tie) else h)
+        call_for(tie, PRE_STEP, step if is_spring(tie) else h)
         for side in range(2 if is_spring(tie) else 0):
             if tie[OWNER + side] != 0:
                 b = body_of(tie, side)
@@ -193,12 +193,6 @@ def let_go_of(links, ratio):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def functions_of(tie):  # type: ignore[no-untyped-def]
-    """Chipmunk's functions for a tie."""
-    return integers(integers(tie[CONSTRAINT], CONSTRAINT_WORDS)[CONSTRAINT_CLASS], 4)
-
-
-@kernel
 def pull(links, h):  # type: ignore[no-untyped-def]
     """One of Chipmunk's iterations over these constraints.
 
@@ -210,7 +204,7 @@ def pull(links, h):  # type: ignore[no-untyped-def]
         for side in range(2):
             b = body_of(tie, side)
             before[side, 0], before[side, 1], before[side, 2] = b[VX], b[VX + 1], b[SPIN]
-        call_constraint(functions_of(tie)[_APPLY_IMPULSE], tie[CONSTRAINT], h)
+        call_for(tie, APPLY_IMPULSE, h)
         for side in range(2):
             b = body_of(tie, side)
             if b[MASS_INVERSE] > 0.0:

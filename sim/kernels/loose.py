@@ -10,8 +10,6 @@ from sim.chipmunk import (
     ARBITER_BODY_B,
     ARBITER_CONTACTS,
     ARBITER_COUNT,
-    ARBITER_NEXT_A,
-    ARBITER_NEXT_B,
     ARBITER_NORMAL,
     ARBITER_STATE,
     ARBITER_WORDS,
@@ -29,7 +27,7 @@ from sim.chipmunk import (
     SPIN,
     VX,
 )
-from sim.kernels.owners import owner_of
+from sim.kernels.owners import next_arbiter, owner_of
 from sim.memory import floats, integers
 
 #: Kinds of bodies: in a structure; loose, and loose with constraints of Chipmunk's own; static or kinematic.
@@ -89,7 +87,7 @@ def touching(addresses, order, kind):  # type: ignore[no-untyped-def]
                                 t[2 + m] = contact[CONTACT_R1 + m]
                             t[6], t[7] = contact[CONTACT_NORMAL_IMPULSE], contact[CONTACT_NORMAL_IMPULSE + 1]
                         count += 1
-                arbiter = w[ARBITER_NEXT_A] if is_a else w[ARBITER_NEXT_B]
+                arbiter = next_arbiter(arbiter, addresses[i])
     return places, touches
 
 

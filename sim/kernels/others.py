@@ -13,8 +13,6 @@ from sim.chipmunk import (
     ARBITER_BODY_B,
     ARBITER_CONTACTS,
     ARBITER_COUNT,
-    ARBITER_NEXT_A,
-    ARBITER_NEXT_B,
     ARBITER_WORDS,
     ARBITERS,
     BIAS_SPIN,
@@ -34,6 +32,7 @@ from sim.kernels.bodies import move, put
 from sim.kernels.layout import BODY_A, BODY_B, CACHED, OWNER_A, OWNER_B
 from sim.kernels.moves import way_to_line
 from sim.kernels.noted import NOTES_WORDS, SPEED, TIES_COUNT, note_struck
+from sim.kernels.owners import next_arbiter
 from sim.kernels.reached import MOST_LINKED, index_in, reach
 from sim.kernels.rows import push_loose
 from sim.kernels.ties import OWNER, TIE_WORDS, address_of, is_of, tie_at
@@ -165,7 +164,7 @@ def struck_besides(head, others, pushes):  # type: ignore[no-untyped-def]
                 for axis in range(3):
                     struck[i, axis] += pushes[i, axis]
                     pushes[i, axis] = 0.0
-            arbiter = w[ARBITER_NEXT_A] if w[ARBITER_BODY_A] == others[i] else w[ARBITER_NEXT_B]
+            arbiter = next_arbiter(arbiter, others[i])
     return struck
 
 
@@ -255,7 +254,7 @@ def touches(t, body):  # type: ignore[no-untyped-def]
             w = integers(arbiter, ARBITER_WORDS)
             if w[ARBITER_BODY_A] == body or w[ARBITER_BODY_B] == body:
                 return True
-            arbiter = w[ARBITER_NEXT_A] if w[ARBITER_BODY_A] == body_at[i] else w[ARBITER_NEXT_B]
+            arbiter = next_arbiter(arbiter, body_at[i])
     return False
 
 

@@ -3,6 +3,10 @@
 import numpy as np
 
 from sim.chipmunk import (
+    ARBITER_BODY_A,
+    ARBITER_NEXT_A,
+    ARBITER_NEXT_B,
+    ARBITER_WORDS,
     BODY_FULL_WORDS,
     CLASS_BYTES,
     CONSTRAINT_BODY_A,
@@ -54,6 +58,13 @@ def next_at(constraint, body):  # type: ignore[no-untyped-def]
     """The constraint after this one in a body's list."""
     w = integers(constraint, CONSTRAINT_WORDS)
     return w[CONSTRAINT_NEXT_A] if w[CONSTRAINT_BODY_A] == body else w[CONSTRAINT_NEXT_B]
+
+
+@kernel
+def next_arbiter(arbiter, body):  # type: ignore[no-untyped-def]
+    """The arbiter after this one in a body's list."""
+    w = integers(arbiter, ARBITER_WORDS)
+    return w[ARBITER_NEXT_A] if w[ARBITER_BODY_A] == body else w[ARBITER_NEXT_B]
 
 
 @inlined

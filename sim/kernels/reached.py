@@ -6,8 +6,6 @@ Constraints of Chipmunk's own lead from one to the next, see `links`.
 from sim.chipmunk import (
     ARBITER_BODY_A,
     ARBITER_BODY_B,
-    ARBITER_NEXT_A,
-    ARBITER_NEXT_B,
     ARBITER_WORDS,
     ARBITERS,
     BODY_FULL_WORDS,
@@ -23,7 +21,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.layout import BODY_A, BODY_B, OWNER_A, OWNER_B
 from sim.kernels.noted import NOTES_WORDS, TIES_COUNT
-from sim.kernels.owners import next_at, owner_of
+from sim.kernels.owners import next_arbiter, next_at, owner_of
 from sim.kernels.ties import OWNER, address_of, is_of, is_one_of, kind_of, tie_at
 from sim.memory import floats, integers, kernel
 
@@ -97,7 +95,7 @@ def touches_another(head, body):  # type: ignore[no-untyped-def]
         owner = owner_of(other, functions) if floats(other, BODY_WORDS)[MASS_INVERSE] > 0.0 else 0
         if owner != 0 and not is_one_of(owner, head):
             return True
-        arbiter = w[ARBITER_NEXT_A] if is_a else w[ARBITER_NEXT_B]
+        arbiter = next_arbiter(arbiter, body)
     return False
 
 

@@ -27,16 +27,18 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import WHOLE_STEP
-from sim.kernels.links import functions_of
 from sim.kernels.noted import NOTES_WORDS, SPEED, TIES_COUNT, row_of
 from sim.kernels.ties import (
+    APPLY_IMPULSE,
     CONSTRAINT,
     INDEX,
     KIND,
     LATE,
     OWNER,
+    PRE_STEP,
     address_of,
     body_of,
+    call_for,
     impulse_of,
     is_of,
     is_spring,
@@ -44,10 +46,9 @@ from sim.kernels.ties import (
     tie_at,
     way_of,
 )
-from sim.memory import call_constraint, floats, integers, kernel
+from sim.memory import floats, integers, kernel
 from sim.stock import KIND_ARMS, KIND_WAY, KIND_WORDS, LINE, TURN
 
-_PRE_STEP, _APPLY_IMPULSE = 0, 2
 # Over what outer forces, and the turning of the bodies, give in a step.
 _SUDDEN = 2.0
 
@@ -132,7 +133,7 @@ def begun_with(tie, side, start, now):  # type: ignore[no-untyped-def]
 @kernel
 def response(tie, velocity, h):  # type: ignore[no-untyped-def]
     """By how much a tie changes the velocities of its ends against each other, with bodies that have these, alone."""
-    impulse, kept, changed, functions = impulse_of(tie), np.zeros(2), np.zeros(2), functions_of(tie)
+    impulse, kept, changed = impulse_of(tie), np.zeros(2), np.zeros(2)
     before = np.empty((2, 3))
     for side in range(2):
         b = body_of(tie, side)
@@ -140,8 +141,8 @@ def response(tie, velocity, h):  # type: ignore[no-untyped-def]
         b[VX], b[VX + 1], b[SPIN] = velocity[side, 0], velocity[side, 1], velocity[side, 2]
     for i in range(len(impulse)):
         kept[i], impulse[i] = impulse[i], 0.0
-    call_constraint(functions[_PRE_STEP], tie[CONSTRAINT], h)
-    call_constraint(functions[_APPLY_IMPULSE], tie[CONSTRAINT], h)
+    call_for(tie, PRE_STEP, h)
+    call_for(tie, APPLY_IMPULSE, h)
     for i in range(len(impulse)):
         impulse[i] = kept[i]
         for side in range(2):

@@ -17,8 +17,6 @@ import numpy as np
 
 from sim.chipmunk import (
     BODY_WORDS,
-    CONSTRAINT_CLASS,
-    CONSTRAINT_WORDS,
     MASS_INVERSE,
     MOMENT_INVERSE,
     SPIN,
@@ -32,8 +30,22 @@ from sim.kernels.complement import NOT_FINITE, factorise_group, transmit
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.layout import STEP
 from sim.kernels.noted import NOTES_WORDS, TIES_COUNT
-from sim.kernels.ties import CONSTRAINT, INDEX, KIND, LINKED, OWNER, body_of, is_of, ratio_of, slacken, tie_at, way_of
-from sim.memory import call_constraint, floats, integers, kernel
+from sim.kernels.ties import (
+    APPLY_IMPULSE,
+    CONSTRAINT,
+    INDEX,
+    KIND,
+    LINKED,
+    OWNER,
+    body_of,
+    call_for,
+    is_of,
+    ratio_of,
+    slacken,
+    tie_at,
+    way_of,
+)
+from sim.memory import floats, integers, kernel
 from sim.stock import (
     KIND_COEFFICIENT,
     KIND_DAMPING,
@@ -44,7 +56,6 @@ from sim.stock import (
     POINT,
 )
 
-_APPLY_IMPULSE = 2
 # Of the impulses' energy.
 _AGREED, _MOST_SWEEPS = 1e-20, 200
 
@@ -209,8 +220,7 @@ def turn_of(tie, ends, ports, c, given, h):  # type: ignore[no-untyped-def]
     for side in range(2):
         b = body_of(tie, side)
         before[side, 0], before[side, 1], before[side, 2] = b[VX], b[VX + 1], b[SPIN]
-    functions = integers(integers(tie[CONSTRAINT], CONSTRAINT_WORDS)[CONSTRAINT_CLASS], 4)
-    call_constraint(functions[_APPLY_IMPULSE], tie[CONSTRAINT], h)
+    call_for(tie, APPLY_IMPULSE, h)
     for side in range(2):
         b = body_of(tie, side)
         if b[MASS_INVERSE] > 0.0:

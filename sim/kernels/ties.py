@@ -27,7 +27,7 @@ from sim.kernels import views
 from sim.kernels.bare import clear
 from sim.kernels.noted import BOUND, KINDS, KINDS_COUNT, NOTES_WORDS, STAMP, TIES, TIES_COUNT
 from sim.kernels.owners import constraints_with, find, home, next_at, unite
-from sim.memory import floats, integers, kernel
+from sim.memory import call_constraint, floats, integers, kernel
 from sim.stock import (
     KIND_ARMS,
     KIND_AXIS,
@@ -51,6 +51,8 @@ from sim.stock import (
 #: for the group through whose parts it goes (0: none), see `links`; and how long ago it began to give a blow, see
 #: `tie_blows`, below 0 if it gives none.
 CONSTRAINT, PLACE, KIND, OWNER, INDEX, SEEN, SUM, LINKED, LATE, TIE_WORDS = 0, 1, 2, 3, 5, 7, 13, 15, 16, 17
+#: Where Chipmunk's functions for a tie are among the others.
+PRE_STEP, APPLY_IMPULSE = 0, 2
 
 
 @kernel
@@ -68,6 +70,13 @@ def kind_of(t, constraint):  # type: ignore[no-untyped-def]
 def tie_at(notes, k):  # type: ignore[no-untyped-def]
     """Row k of a space's ties."""
     return integers(notes[TIES] + 8 * TIE_WORDS * k, TIE_WORDS)
+
+
+@kernel
+def call_for(tie, function, h):  # type: ignore[no-untyped-def]
+    """Call one of Chipmunk's functions for a tie, for a time ``h``."""
+    functions = integers(integers(tie[CONSTRAINT], CONSTRAINT_WORDS)[CONSTRAINT_CLASS], APPLY_IMPULSE + 1)
+    call_constraint(functions[function], tie[CONSTRAINT], h)
 
 
 @kernel

@@ -1,0 +1,18 @@
+"""Structures at random (`python benchmarks/random_structures.py` runs hundreds) keep to what hard cases are held to."""
+
+import pytest
+from random_cases import RandomCase
+from watched_cases import watch
+
+from sim import IMPLICIT_EULER
+
+
+@pytest.mark.parametrize("seed", range(11, 31))
+def test_all_is_well_by_the_default_scheme(seed: int) -> None:
+    """Energy is not created, momenta are kept, no joint bears too much, every step converges and none is refused."""
+    assert watch(RandomCase(seed, IMPLICIT_EULER)).faults(default=True) == []
+
+
+def test_a_seed_says_everything() -> None:
+    assert str(RandomCase(3)) == str(RandomCase(3))
+    assert watch(RandomCase(3)) == watch(RandomCase(3))

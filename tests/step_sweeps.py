@@ -94,7 +94,11 @@ CASES: dict[str, Callable[[int, int], tuple[float, ...]]] = {
     "the same, its prop is taken away": sudden.prop_taken_away,
     "mass sticks to a cantilever, C6-parkes-mid: plastic work [J], what stays [m]": sudden.struck_cantilever,
     "C6-parkes-heavy": lambda rate, n: sudden.struck_cantilever(rate, n, "C6-parkes-heavy"),
+    "C6-parkes-mid, second-order scheme": lambda rate, n: sudden.struck_cantilever(
+        rate, n, scheme=AVERAGE_ACCELERATION
+    ),
     "beam falls on pins, C6-drop-beam: the same": sudden.beam_on_pins,
+    "the same, by the second-order scheme": lambda rate, n: sudden.beam_on_pins(rate, n, AVERAGE_ACCELERATION),
     "mass on a hinge, sudden load, C6-sdof-step: the same": sudden.mass_on_hinge,
     "weak bar falls flat on a block under its middle: plastic work [J]": sudden.bar_on_block,
     "the same on blocks under its ends": sudden.bar_on_bearings,

@@ -90,9 +90,12 @@ def prop_taken_away(rate: int, iterations: int) -> tuple[float, float]:
     return deepest(space, body, rate, 0.5), sum(float(joint.dissipated) for joint in beam.joints)
 
 
-def open_motion(name: str, scene: Scene, joints: int, rate: int, iterations: int) -> tuple[float, float]:
+def open_motion(
+    name: str, scene: Scene, joints: int, rate: int, iterations: int, scheme: tuple[float, float] = IMPLICIT_EULER
+) -> tuple[float, float]:
     """Plastic work [J] and what stays of the deflection of B [m] of an open case in motion."""
-    course = sim.follow(scene, Model("lobatto", joints, "fibre", 16, dt=1.0 / rate, iterations=iterations))
+    model = Model("lobatto", joints, "fibre", 16, dt=1.0 / rate, iterations=iterations, scheme=scheme)
+    course = sim.follow(scene, model)
     assert course.unconverged == 0, name
     return course.dissipated, -course.residual["B"][1]
 
@@ -109,18 +112,19 @@ def strip(far: str, extra: str, velocity: float, loads: tuple[str, ...] = (), se
     return frame_scene(nodes, members, motion, loads, section=f"rectangle {section} mm", extra=extra)
 
 
-def struck_cantilever(rate: int, iterations: int, name: str = "C6-parkes-mid") -> tuple[float, float]:
+def struck_cantilever(
+    rate: int, iterations: int, name: str = "C6-parkes-mid", scheme: tuple[float, float] = IMPLICIT_EULER
+) -> tuple[float, float]:
     """Parkes' cantilever, a mass sticking to its tip."""
     mass, speed = OPEN[name]["inputs"]["G_kg"], OPEN[name]["inputs"]["V_m_per_s"]
     tip = f"[nodes.B]\nat = [1.0, 0.0]\nmass = {mass!r}\nvelocity = [0.0, {-speed!r}]"
-    return open_motion(name, strip("", tip, 0.0), 9, rate, iterations)
+    return open_motion(name, strip("", tip, 0.0), 9, rate, iterations, scheme)
 
 
-def beam_on_pins(rate: int, iterations: int) -> tuple[float, float]:
+def beam_on_pins(rate: int, iterations: int, scheme: tuple[float, float] = IMPLICIT_EULER) -> tuple[float, float]:
     """A beam that falls flat and is caught by pins at its ends."""
-    return open_motion(
-        "C6-drop-beam", strip("roller-x", "", OPEN["C6-drop-beam"]["inputs"]["v_m_per_s"]), 5, rate, iterations
-    )
+    scene = strip("roller-x", "", OPEN["C6-drop-beam"]["inputs"]["v_m_per_s"])
+    return open_motion("C6-drop-beam", scene, 5, rate, iterations, scheme)
 
 
 def mass_on_hinge(rate: int, iterations: int, row: int = 1) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from hard_cases import chain, law
 
 import sim
 from sim import AVERAGE_ACCELERATION, Structure
+from sim.kernels import layout as at
 
 
 def test_average_acceleration_dissipates_nothing_of_its_own() -> None:
@@ -53,6 +54,28 @@ def test_free_vibration_at_twenty_steps_a_period() -> None:
     early, late = abs((y[:40] * wave).sum()), abs((y[-40:] * wave).sum())
     cycles = (len(y) - 40) / (20.0 * period)
     assert (late / early) ** (1.0 / cycles) == pytest.approx(1.0, abs=0.002)
+
+
+@pytest.mark.parametrize(("steps", "kept"), [(20, 0.025), (15, 0.01), (10, 0.03), (6, 0.08)])
+def test_parts_of_steps_go_over_to_whole_ones_with_their_energy(steps: int, kept: float) -> None:
+    """A mass on a spring is set going; with twenty steps a period or more, all steps are whole.
+
+    The first of them loses (ωh)²/4 of the energy, for a velocity is set at its start and belongs to its middle. With
+    fewer steps a period they are taken in parts, and whole ones from then on neither lose nor gain anything.
+    """
+    space, body, joint = spring(800.0, 1e9, scheme=AVERAGE_ACCELERATION)
+    structure, dt = Structure([joint]), 2.0 * math.pi / 20.0 / steps
+    parts, energy = [], []
+    for k in range(400):
+        if k == 1:
+            body.velocity = (1.0, 0.0)
+        space.step(dt)
+        parts.append(int(structure.tables.control[at.PARTS]))
+        energy.append(structure.energy.kinetic + structure.energy.elastic)
+    assert (max(parts) > 1) == (steps < 20)
+    assert set(parts[100:]) == {1}
+    assert energy[100:] == pytest.approx([energy[100]] * 300, rel=1e-9)
+    assert 1.0 - kept <= energy[100] <= 1.0 + 1e-9
 
 
 @pytest.mark.parametrize("stiffness", [1.0, 1e3, 1e6])

@@ -15,8 +15,8 @@ is over:
   a 60th of a second. What a part would lose by implicit Euler is known, and a step n times
   as long loses n times that in its time.
 
-So the largest and the lasting deflection are found at any step; what swings behind them is damped as ever. Nothing is
-spent on this where nothing is hit.
+So the largest and the lasting deflection are found at any step; what swings behind them is damped as ever, or goes over
+to whole steps by the second-order scheme, see `lengths`. Nothing is spent on this where nothing is hit.
 """
 
 import math
@@ -48,11 +48,13 @@ from sim.kernels.layout import (
     LEDGER_PLASTIC,
     NEXT_MOVE,
     OTHER_START,
+    OVER_AT,
     OWNER_A,
     OWNER_B,
     STRIKE,
     SUDDEN,
     UNDAMPED,
+    WANTED_BETA,
     WHOLE_ONLY,
     WHOLE_STEP,
 )
@@ -127,6 +129,7 @@ def takes_parts(head):  # type: ignore[no-untyped-def]
                 0.0,
             )
             settings[BLOW_LEAST], settings[BLOW_MOST], settings[BLOW_SHARE] = taken, taken, worth
+            settings[OVER_AT] = 0.0
             c = t[at.NEXT]
     else:
         grow_older(head, kinetic, of_head[BEFORE + NEXT_MOVE])
@@ -135,7 +138,7 @@ def takes_parts(head):  # type: ignore[no-untyped-def]
         return False
     if of_head[WHOLE_STEP] > longest(of_head, of_head[BLOW_AGE]):
         return True
-    if of_head[UNDAMPED] == 0.0 or is_over(head):
+    if of_head[UNDAMPED] == 0.0 or of_head[OVER_AT] > 0.0 or is_over(head):
         forget(head)
     return False
 
@@ -227,8 +230,23 @@ def sum_of(head, entry):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def go_over(head):  # type: ignore[no-untyped-def]
+    """A blow is over: go on in whole steps, or where nothing damps these, in parts that grow to them."""
+    settings = views.settings(views.control(head))
+    if settings[WANTED_BETA] == 0.0 or settings[UNDAMPED] != AFTER_IMPULSES:
+        forget(head)
+        return
+    c = head
+    while c != 0:
+        t = views.control(c)
+        if views.settings(t)[OVER_AT] == 0.0:
+            views.settings(t)[OVER_AT] = views.settings(t)[BLOW_AGE]
+        c = t[at.NEXT]
+
+
+@kernel
 def forget(head):  # type: ignore[no-untyped-def]
-    """A blow is over."""
+    """A blow is over, and steps are taken whole."""
     c = head
     while c != 0:
         t = views.control(c)

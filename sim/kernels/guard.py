@@ -19,7 +19,7 @@ The average-acceleration rule neither dissipates nor creates where the step reso
 goes up and down a little. Pieces that turn by a radian in a step make it create ever more energy. So where any turns by
 more than a quarter of that, steps are taken by implicit Euler, and also once a tenth of the ledger's largest entry has
 been created, until that is gone; a step that would create more than a tenth of the most that outer forces had done by
-then has the rest taken out as above. Parts by it in place of implicit Euler are kept from creating any, as that is.
+then has the rest taken out as above. Parts by it after impulses are kept from creating any, as implicit Euler is.
 """
 
 import math
@@ -79,7 +79,16 @@ def choose_scheme(t, turn):  # type: ignore[no-untyped-def]
         least = -_BOUND * largest if settings[BETA] != 0.0 else 0.0
         if ledger[LEDGER_NUMERICAL] < least or turn > _TURN:
             beta, delta = 0.0, 1.0
+        elif followed_in_parts(t) and settings[BLOW_AGE] > 0.0:
+            delta = max(delta, 1.0 - settings[UNDAMPED])
     settings[BETA], settings[DELTA] = beta, delta
+
+
+@inlined
+def followed_in_parts(t):  # type: ignore[no-untyped-def]
+    """Whether parts are taken by the average-acceleration rule, which is wanted, after impulses."""
+    settings = views.settings(t)
+    return t[at.PARTS] > 1 and settings[BLOW] > 0.0 and settings[UNDAMPED] == AFTER_IMPULSES
 
 
 @kernel
@@ -115,7 +124,7 @@ def close_from_below(t, contact, viscous, numerical, less):  # type: ignore[no-u
     # Where the average-acceleration rule is wanted, its own entry goes up and down; what a step that is longer than the
     # last one has created is taken back as soon as it moves.
     least = min(numerical, 0.0) if settings[WANTED_BETA] != 0.0 else 0.0
-    if settings[BETA] != 0.0 and settings[WANTED_BETA] != 0.0:
+    if settings[BETA] != 0.0 and settings[WANTED_BETA] != 0.0 and not followed_in_parts(t):
         settings[LARGEST] = max(settings[LARGEST], abs(ledger[LEDGER_EXTERNAL]))
         least = min(least, -_BOUND * settings[LARGEST])
     given = max(min(least - ledger[LEDGER_NUMERICAL], less), 0.0)

@@ -145,7 +145,9 @@ SOFT = 30
 LARGEST = 31
 # Angular momentum of a new structure's bodies before some are put to where others have taken them; no number otherwise.
 MOMENT = 32
-_NUMBERS = 33
+# How old a blow was when it was over, and its parts began to grow to whole steps; 0 before, see `lengths`.
+OVER_AT = 33
+_NUMBERS = 34
 # All of them again, as they were before the step.
 BEFORE, SETTINGS_WORDS = _NUMBERS, 2 * _NUMBERS
 

@@ -10,8 +10,8 @@ the one that begins at the middle of the last move lies ½ h V behind where the 
 
 and where it was h V, the rest is made up for; of a structure that nothing holds, in the motion of its bodies relative
 to their centre of mass, which leaves its angular momentum alone; and nothing while something touches it, for that would
-be left behind. Nothing either where the second-order scheme comes from the parts of a step (`parts.py`): what moves so
-soon after a blow is faster than whole steps resolve, and half a whole step of it tears stiff joints open.
+be left behind. Nothing either where the second-order scheme comes from the parts that a blow by contact was taken in:
+what moves so soon after it is faster than whole steps resolve, and half a whole step of it tears stiff joints open.
 """
 
 import math
@@ -25,7 +25,7 @@ from sim.kernels.bare import clear
 from sim.kernels.bodies import move, store_velocities
 from sim.kernels.guard import relative_velocity, rigid_motion
 from sim.kernels.inertia import mass_of, moment_of
-from sim.kernels.layout import BEFORE, BETA, MOMENT, MOVE, UNEVEN, WANTED_BETA
+from sim.kernels.layout import BEFORE, BETA, MOMENT, MOVE, UNDAMPED, UNEVEN
 from sim.memory import floats, inlined, kernel
 
 # Over the step: what is rounding.
@@ -46,7 +46,7 @@ def carry(t, h, last_move, moved, touching):  # type: ignore[no-untyped-def]
     rest = (last_move if implicit else 0.5 * (last_move + h)) - moved
     if last_move == 0.0 or abs(rest) <= _SAME * h or touching or t[at.CONTACTS] != 0:
         return
-    if settings[WANTED_BETA] != 0.0 and not implicit and t[at.AFTER_PARTS] == 1:
+    if settings[UNDAMPED] == 0.0 and not implicit and t[at.AFTER_PARTS] == 1:
         return
     last = views.per_body(t, at.LAST_VELOCITY)
     for i in range(t[at.MOVING], t[at.BODIES]):

@@ -32,7 +32,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
 from sim.kernels.beside import gather_beside, leave_out_borne, note_starts_beside, take_over_beside
-from sim.kernels.blow import OVER, forget, grow_older, is_over
+from sim.kernels.blow import OVER, go_over, grow_older, is_over
 from sim.kernels.bodies import load_positions, load_velocities, move, store_velocities
 from sim.kernels.guard import choose_for_part
 from sim.kernels.kinematics import prepare
@@ -50,8 +50,8 @@ from sim.kernels.layout import (
     STEP,
     STEP_RATIO,
     STRIKE,
+    UNDAMPED,
     UNEVEN,
-    WANTED_BETA,
     WHERE,
     WHOLE_RATIO,
     WHOLE_STEP,
@@ -142,7 +142,7 @@ def take_parts(head, fresh, touching):  # type: ignore[no-untyped-def]
         note_ways(rows, others, 0.5 * steps[i])
         grow_older(head, 0.0, h)
     if lost < OVER * whole * settings[BLOW] or is_over(head):
-        forget(head)
+        go_over(head)
     look(head)
     let_go(head, others, mates, pushes, begun, free, rows)
     if averaged:
@@ -178,7 +178,7 @@ def open_step(head, late, moves, steps):  # type: ignore[no-untyped-def]
             if touches[k, STRIKE] > 0.0:
                 touches[k, PUSH] = 0.0
         store_velocities(t, views.per_body(t, at.START_VELOCITY))
-        if settings[BETA] != 0.0 and settings[WANTED_BETA] == 0.0:
+        if settings[BETA] != 0.0 and settings[UNDAMPED] != 0.0:
             if settings[BEFORE + BETA] != 0.0:
                 carry_on(t, 0.5 * (settings[STEP] - settings[MOVE]))
                 go_with_support(t, 0.5 * (settings[MOVE] - settings[STEP]))

@@ -18,8 +18,11 @@ to a quarter of the plastic work would be lost. Where impulses bring much, the p
 average-acceleration rule, see `guard`, with a little damping (δ = 0.02) of what they no longer resolve as they grow:
 undamped, that would tear at stiff joints in longer parts. By forces that begin at once stiff joints would ring with it,
 to twice what they bear at rest. So implicit Euler goes first, until what is stiff has settled, and damping is
-stronger (δ = 0.1). Where the rule is wanted for all steps, they are taken whole: it does not damp, and going over to
-steps of another length costs up to half of what a vibration turns by in a step.
+stronger (δ = 0.1).
+
+Where the rule is wanted for all steps, forces that begin at once are taken in whole ones, which do not damp them. So
+are impulses that whole steps resolve: whose velocities deform joints in a step by less than the tenth part of their
+energy, twenty steps a period. Others are taken in parts, too; how these go over to whole steps is told in `lengths`.
 
 What brings less than a hundredth of the energy that is there already, a tenth of the forces, is none: loads that grow
 within ten steps or more, say.
@@ -45,17 +48,21 @@ from sim.kernels.layout import (
     LEDGER_ELASTIC,
     LEDGER_KINETIC,
     MOVE,
+    OVER_AT,
     STEP,
     UNDAMPED,
     WANTED_BETA,
     WHOLE_ONLY,
 )
+from sim.kernels.resolved import loss_of_joints
 from sim.memory import floats, inlined, kernel
 
 #: Of the structure's energy.
 WORTH = 1e-2
 # Likewise, for impulses to be followed without damping.
 _MUCH = 0.25
+# (ωh)² of what whole steps of the average-acceleration rule resolve: twenty a period.
+_RESOLVED = 0.1
 # Of the energy that a support's new velocity brings: what may move against it before.
 _STRAYED = 1e-2
 # Of a step.
@@ -72,16 +79,19 @@ def sudden_energy(t, last_step):  # type: ignore[no-untyped-def]
     energy, by_impulses = note_forces(t) if t[at.FORCED] == 1 else (0.0, 0.0)
     t[at.JERKED] = 0
     by_supports = note_supports(t)
-    whole = settings[WANTED_BETA] != 0.0 or settings[WHOLE_ONLY] != 0.0 or t[at.SPREAD] == 1
-    if whole or settings[BLOW] > 0.0:
-        return 0.0
     present = ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC]
     at_once = max(by_impulses, by_supports if t[at.JERKED] == 1 else 0.0)
-    settings[UNDAMPED] = AFTER_IMPULSES if at_once > _MUCH * present else AFTER_FORCES
+    much, wanted = at_once > _MUCH * present, settings[WANTED_BETA] != 0.0
+    whole = settings[WHOLE_ONLY] != 0.0 or t[at.SPREAD] == 1 or (wanted and not much)
+    if whole or (settings[BLOW] > 0.0 and settings[OVER_AT] == 0.0):
+        return 0.0
+    settings[UNDAMPED] = AFTER_IMPULSES if much else AFTER_FORCES
     enough = WORTH * present
     if energy > enough and t[at.FREE] == 1:
         enough += WORTH * energy
         energy = leave_relative(t)
+    if wanted and loss_of_joints(t, views.per_body(t, at.START_VELOCITY)) <= _RESOLVED * max(energy, by_supports):
+        return 0.0
     if energy > enough and t[at.NEWTON_STEPS] > 0:
         # So far that is what it would be without joints, which is the most.
         energy = min(energy, with_joints(t) * (last_step / settings[STEP]) ** 2)

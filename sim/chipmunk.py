@@ -60,6 +60,11 @@ ARBITER_COUNT, ARBITER_CONTACTS, ARBITER_NORMAL = 13, 14, 15
 ARBITER_STATE, FIRST = 22, 0
 ARBITER_WORDS = 23
 
+# cpShape: the function table, which begins with the kind of shape as half a word; of circles, segments and polygons, in
+# this order, the radius by which they are rounded.
+SHAPE_CLASS = 0
+SHAPE_RADIUS = 28, 36, 24
+
 # cpContact: one point of contact.
 CONTACT_R1, CONTACT_R2 = 0, 2
 CONTACT_NORMAL_MASS, CONTACT_TANGENT_MASS, CONTACT_BOUNCE = 4, 5, 6

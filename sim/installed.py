@@ -34,7 +34,16 @@ def verify() -> None:
     IncompatiblePymunk
         When a field is not where it is expected; the message names the versions that work.
     """
-    parts = _body_fits, _pseudo_velocities_fit, _space_fits, _threads_fit, _constraints_fit, _contacts_fit, _lists_fit
+    parts = (
+        _body_fits,
+        _pseudo_velocities_fit,
+        _space_fits,
+        _threads_fit,
+        _constraints_fit,
+        _contacts_fit,
+        _shapes_fit,
+        _lists_fit,
+    )
     check(all(fits() for fits in parts))
 
 
@@ -176,6 +185,23 @@ def _contacts_fit() -> bool:
     contact |= {"bias": at.CONTACT_BIAS, "hash": at.CONTACT_HASH}
     whole = ffi.sizeof("struct cpContact") == at.CONTACT_BYTES == 8 * at.CONTACT_WORDS
     return whole and _begin("cpArbiter", arbiter) and _begin("struct cpContact", contact)
+
+
+def _shapes_fit() -> bool:
+    """Whether shapes know of what kind they are, and keep their radius, where they should."""
+    body, corners = pymunk.Body(1.0, 1.0), [(0.0, 0.0), (2.0, 0.0), (0.0, 2.0)]
+    shapes = (
+        pymunk.Circle(body, 79.0),
+        pymunk.Segment(body, corners[0], corners[1], 79.0),
+        pymunk.Poly(body, corners, radius=79.0),
+    )
+    fits = True
+    for kind, (shape, word) in enumerate(zip(shapes, at.SHAPE_RADIUS, strict=True)):
+        location = address(shape._shape)
+        functions = int(words(location, 1, np.int64)[at.SHAPE_CLASS])
+        fits &= is_address(functions) and int(words(functions, 1, np.int64)[0]) & 0xFFFFFFFF == kind
+        fits &= words(location, word + 1)[word] == 79.0
+    return bool(fits)
 
 
 def _begin(struct: str, expected: dict[str, int]) -> bool:

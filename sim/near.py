@@ -7,18 +7,19 @@ before they meet.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pymunk
 
 from sim import chipmunk, shape_copies
-from sim.first_touch import pass_each_other
+from sim.first_touch import pass_each_other, rounding
 from sim.inner_edges import pass_inner_edges
 from sim.joint import DuctileJoint
 from sim.kernels import layout as at
 from sim.kernels.noted import MATE
+from sim.kernels.reached import MOST_LINKED
 
 if TYPE_CHECKING:
     from sim.noted import Notes
@@ -88,6 +89,7 @@ class Surroundings:
             touches[rows, at.FRICTION] = own.friction * other.friction
             touches[rows, at.RETURN] = own.elasticity * other.elasticity
             touches[rows, at.REACH : at.REACH + 2] = reach
+            touches[rows, at.ROUNDED : at.ROUNDED + 2] = rounding(own), rounding(other)
             # What rolls keeps its point where it is below its centre.
             touches[rows, at.MEETING] = 0.5 + 0.5 * (isinstance(other, pymunk.Circle) - isinstance(own, pymunk.Circle))
 
@@ -165,11 +167,11 @@ def _pairs(structure: Structure, index: Collection[pymunk.Body]) -> Iterator[Pai
     fastest = max([speeds.max(), *(_speed_at(body) for body in np.unique(touching).tolist())])
     boxes += _FASTER * h * fastest * _OUTWARDS
     around = pymunk.BB(*boxes[:, :2].min(axis=0), *boxes[:, 2:].max(axis=0))
-    others = [
-        (other, *_extent(other))
-        for other in sorted(space.bb_query(around, pymunk.ShapeFilter()), key=_number)
-        if other.body not in index and not other.sensor and _is_free(other.body, index, touching)
-    ]
+    there = sorted(space.bb_query(around, pymunk.ShapeFilter()), key=_number)
+    there = [shape for shape in there if shape.body not in index and not shape.sensor]
+    free = {shape.body for shape in there if _is_free(shape.body, index, touching)}
+    free |= _linked_beside(there, free, touching)
+    others = [(shape, *_extent(shape)) for shape in there if shape.body in free]
     if not others:
         return
     _, their_boxes, their_reaches, their_speeds = zip(*others, strict=True)
@@ -224,10 +226,10 @@ def _extent(shape: pymunk.Shape) -> tuple[tuple[float, float, float, float], flo
 
 
 def _is_free(body: pymunk.Body | None, index: Collection[pymunk.Body], touching: np.ndarray) -> bool:
-    """Whether a body may be solved with a structure within a step: parts do not know how constraints move it.
+    """Whether a body may be solved with a structure within a step.
 
-    But for those at the addresses that are ``touching`` when it begins, and what constraints link to them, or to the
-    bodies of its ``index``.
+    Of those on constraints the ones at the addresses that are ``touching`` when it begins, and what constraints link to
+    them, or to the bodies of its ``index``; for others see `_linked_beside`.
     """
     if body is None or body.is_sleeping:
         return False
@@ -239,6 +241,24 @@ def _is_free(body: pymunk.Body | None, index: Collection[pymunk.Body], touching:
             # That one has listed this one's shapes among its own already, if it was first.
             return not (control[at.NEAR] > 0 or control[at.SPREAD] or joint.structure.whole_steps_only)
     return any(one in index or chipmunk.body_address(one) in touching for one in _linked(body))
+
+
+def _linked_beside(
+    there: Iterable[pymunk.Shape], free: Collection[pymunk.Body | None], touching: np.ndarray
+) -> set[pymunk.Body]:
+    """Bodies that nothing touches yet, and what constraints link to them: they go through the parts with all of that.
+
+    A vehicle that a structure threw back may meet it again within the step. None, where all would be too many.
+    """
+    found: set[pymunk.Body] = set()
+    for body in {shape.body: None for shape in there if shape.body not in free}:
+        if body is None or body in found or body.is_sleeping or body.body_type != pymunk.Body.DYNAMIC:
+            continue
+        linked = _linked(body)
+        if not any(isinstance(joint, DuctileJoint) for one in linked for joint in chipmunk.constraints_on(one)):
+            found.update(linked)
+    loose = sum(body is not None and not chipmunk.constraints_on(body) for body in free)
+    return found if len(found) + loose + len(np.unique(touching)) <= MOST_LINKED else set()
 
 
 def _linked(body: pymunk.Body) -> list[pymunk.Body]:

@@ -105,6 +105,7 @@ CASES: dict[str, Callable[[int, int], tuple[float, ...]]] = {
     "ball of 500 kg falls 0.5 m on a portal: peak deflection [m]": sudden.ball_on_portal,
     "car of 540 kg on springs hits a post at 10 m/s: furthest [m], plastic work [J]": lambda r, n: post_hit(r, n)[:2],
     "the same, motors of 200 N m drive it on": lambda rate, n: post_hit(rate, n, torque=200.0)[:2],
+    "the same at 20 m/s, without motors": lambda rate, n: post_hit(rate, n, 20.0)[:2],
     **HELD,
 }
 

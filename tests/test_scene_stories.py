@@ -145,7 +145,7 @@ def test_an_overloaded_bridge_loses_two_joints_and_falls(dt: float) -> None:
 
 @pytest.mark.parametrize("dt", [1 / 60, 1 / 240])
 def test_the_gate_yields_at_its_foot_first_and_takes_the_lorry_s_energy(dt: float) -> None:
-    """50 t at 3 m/s and its wheels: 225 + 9 kJ, and what the motors add: 241 kJ and 0.362 rad in steps of 1/4000 s.
+    """50 t at 3 m/s and its wheels: 225 + 9 kJ, and what the motors add: 241 kJ and 0.362 rad in steps of 1/2000 s.
 
     What a joint bears is M_max = 360 kN m, and no more.
     """
@@ -161,9 +161,9 @@ def test_the_gate_yields_at_its_foot_first_and_takes_the_lorry_s_energy(dt: floa
     assert "gate 1" in first
     assert most == pytest.approx(10e6 * 0.4 * 0.6**2 / 4.0, rel=0.01)
     assert most <= 10e6 * 0.4 * 0.6**2 / 4.0 * (1.0 + 1e-6)
-    assert found["plastic work in the gate"] == pytest.approx(241e3, rel=0.05)
+    assert found["plastic work in the gate"] == pytest.approx(241e3, rel=0.02)
     assert found["plastic work in the gate"] > 0.5 * 50e3 * 3.0**2 + 1000.0 * 3.0**2
-    assert found["largest plastic rotation"] == pytest.approx(0.362, rel=0.03)
+    assert found["largest plastic rotation"] == pytest.approx(0.362, rel=0.05)
     assert found["joints broken"] == 0.0
     assert found["lorry is at x ="] == pytest.approx(-3.0, abs=0.1)
 
@@ -173,7 +173,7 @@ def test_demolisher_crosses_the_bridge_and_is_stopped_by_the_barrier() -> None:
     assert found["joints of the bridge that own weight makes yield"] == 2.0
     assert found["joints of the bridge that yielded"] == 3.0
     assert found["capacity used of the bridge"] == pytest.approx(0.006, rel=0.1)
-    # In steps of 1/2500 s. Once the lorry stands, its motors push on with nearly what the barrier bears.
-    assert found["largest plastic rotation of the barrier"] == pytest.approx(0.325, rel=0.09)
+    # In steps of 1/1000 s. Once the lorry stands, its motors push on with nearly what the barrier bears.
+    assert found["largest plastic rotation of the barrier"] == pytest.approx(0.330, rel=0.05)
     assert found["joints broken"] == 0.0
     assert found["lorry is at x ="] == pytest.approx(122.0, abs=0.1)

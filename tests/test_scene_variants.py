@@ -133,6 +133,9 @@ def test_the_rod_yields_at_its_foot_first_and_stops_the_lorry(dt: float) -> None
     found = world.results()
     assert "rod 1" in first
     brought = (0.5 * 50e3 + 1000.0) * found["lorry's speed before the rod"] ** 2  # type: ignore[operator]
-    assert 0.6 * brought < found["plastic work in the rod"] < brought  # type: ignore[operator]
+    assert found["plastic work in the rod"] < brought  # type: ignore[operator]
+    # In steps of 1/500 s.
+    assert found["plastic work in the rod"] == pytest.approx(35.8e3, rel=0.03)
+    assert found["largest plastic rotation"] == pytest.approx(0.0497, rel=0.03)
     assert found["joints broken"] == 0.0
     assert found["lorry is at x ="] < -3.0  # type: ignore[operator]

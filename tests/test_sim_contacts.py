@@ -229,6 +229,26 @@ def test_restitution_and_friction_are_those_of_the_shapes() -> None:
     assert abs(box.velocity.x) < 1e-3
 
 
+@pytest.mark.parametrize("rate", [60, 240])
+def test_a_wheel_lies_as_deep_on_a_beam_however_fast_it_turns(rate: int) -> None:
+    """What turns about the middle of its rounding is not parted from what it touches, and keeps no overlap for that."""
+
+    def sunk(turning: float) -> float:
+        space = world()
+        space.collision_slop = 5e-3
+        bodies, _ = beam(space, 8)
+        wheel = pymunk.Body(5.0, 0.5 * 5.0 * 0.25**2)
+        wheel.position, wheel.angular_velocity = (1.9, 0.25 + 0.5 * DEPTH + 1e-3), turning
+        space.add(wheel, pymunk.Circle(wheel, 0.25))
+        for _ in range(60):
+            space.step(1 / rate)
+        return float(0.25 + 0.5 * DEPTH - bodies[-1].world_to_local(wheel.position).y)
+
+    at_rest = sunk(0.0)
+    assert 0.0 < at_rest < 2e-4
+    assert sunk(80.0) == pytest.approx(at_rest, abs=1e-6)
+
+
 def test_momentum_is_kept_in_a_collision_with_a_free_structure() -> None:
     space = pymunk.Space()
     space.collision_slop = 1e-4

@@ -14,7 +14,7 @@ OFFSETS = [
     and not name.startswith("_")
     and isinstance(value, int)
     and not name.endswith(("_WORDS", "_BYTES"))
-    if name not in ("FIRST", "CONSTRAINT_CLASS", "LIST_ITEMS", "SPACE_SHAPES")
+    if name not in ("FIRST", "CONSTRAINT_CLASS", "SHAPE_CLASS", "LIST_ITEMS", "SPACE_SHAPES")
 ]
 
 
@@ -26,5 +26,14 @@ def test_the_installed_pymunk_fits() -> None:
 @pytest.mark.parametrize("name", OFFSETS)
 def test_a_field_that_lies_a_word_earlier_is_noticed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(chipmunk, name, getattr(chipmunk, name) - 1)
+    with pytest.raises(IncompatiblePymunk, match="install version 7"):
+        verify()
+
+
+@pytest.mark.parametrize("kind", range(3))
+def test_a_radius_that_lies_a_word_earlier_is_noticed(kind: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """That of a circle, a segment or a polygon."""
+    words = tuple(word - (i == kind) for i, word in enumerate(chipmunk.SHAPE_RADIUS))
+    monkeypatch.setattr(chipmunk, "SHAPE_RADIUS", words)
     with pytest.raises(IncompatiblePymunk, match="install version 7"):
         verify()

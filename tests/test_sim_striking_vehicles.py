@@ -12,6 +12,17 @@ def test_it_does_not_matter_whether_a_post_or_the_car_that_hits_it_came_first() 
     assert post_hit(60, 10, post_first=True)[:2] == pytest.approx(post_hit(60, 10)[:2], rel=0.01)
 
 
+@pytest.mark.parametrize("torque", [0.0, 200.0])
+def test_a_car_that_a_post_throws_back_meets_it_again_within_a_step(torque: float) -> None:
+    """It does so 30 ms later, above or below the end of the same piece, at 60 Hz as at 240 Hz."""
+    assert post_hit(60, 10, torque=torque)[:2] == pytest.approx(post_hit(240, 10, torque=torque)[:2], rel=0.02)
+
+
+def test_a_car_that_is_three_posts_deep_in_one_that_hardly_moves_goes_back_to_where_it_touched() -> None:
+    """At 20 m/s it goes by 0.33 m a step, in the second of which it strikes: the first has put the post's weight on."""
+    assert post_hit(60, 10, 20.0)[:2] == pytest.approx(post_hit(240, 10, 20.0)[:2], rel=0.03)
+
+
 @pytest.mark.parametrize(("rate", "speed"), [(60, 10.0), (240, 10.0), (60, 20.0), (240, 5.0)])
 def test_energy_of_a_car_that_hits_a_post_goes_somewhere_and_comes_from_nowhere(rate: int, speed: float) -> None:
     _, work, entries = post_hit(rate, 10, speed, torque=200.0)

@@ -57,8 +57,9 @@ _AGREED, _STILL = 1e-10, 1e-20
 # constraints take part in them.
 _MOST_DIRECT, _SWEEPS, _WITH_LINKS = 16, 50, 200
 # Sweeps that become shorter by less than this go on for long, and are left where the energy of what is still to come,
-# as a share of all, is no more than that.
-_SLOW, _LITTLE = 0.9, 1e-12
+# as a share of all, is no more than that: well below the square of what joints and contacts agree to (`settle`), or
+# they have turn after turn about what was left.
+_SLOW, _LITTLE = 0.9, 1e-15
 
 
 @kernel

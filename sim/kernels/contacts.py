@@ -18,6 +18,8 @@ from sim.chipmunk import (
     ARBITER_COUNT,
     ARBITER_FRICTION,
     ARBITER_NORMAL,
+    ARBITER_SHAPE_A,
+    ARBITER_SHAPE_B,
     ARBITER_STATE,
     ARBITER_SURFACE,
     ARBITER_WORDS,
@@ -39,6 +41,8 @@ from sim.chipmunk import (
     CONTACT_WORDS,
     FIRST,
     MASS_INVERSE,
+    SHAPE_CLASS,
+    SHAPE_RADIUS,
     SPACE_GRAVITY,
     SPACE_SLOP,
     SPACE_WORDS,
@@ -69,6 +73,7 @@ from sim.kernels.layout import (
     OWNER_B,
     PUSH,
     RETURN,
+    ROUNDED,
     SURFACE,
     WANTED,
     WHERE,
@@ -155,6 +160,15 @@ def load_contact(arbiter, where, place, touch):  # type: ignore[no-untyped-def]
     touch[WANTED] = -contact[CONTACT_BOUNCE]
     touch[BOUNCE], touch[GAP], touch[PUSH] = touch[WANTED], distance(place, touch), contact[CONTACT_BIAS]
     touch[EARLIER], touch[EARLIER + 1], touch[RETURN], touch[MEETING] = 0.0, 0.0, 0.0, 0.5
+    touch[ROUNDED], touch[ROUNDED + 1] = rounding(w[ARBITER_SHAPE_A]), rounding(w[ARBITER_SHAPE_B])
+
+
+@kernel
+def rounding(shape):  # type: ignore[no-untyped-def]
+    """Radius of a circle, or by which a shape is rounded [m]."""
+    kind = integers(integers(shape, SHAPE_CLASS + 1)[SHAPE_CLASS], 1)[0] & 0xFFFFFFFF
+    word = SHAPE_RADIUS[kind]
+    return floats(shape, word + 1)[word]
 
 
 @kernel
@@ -227,11 +241,16 @@ def meet(place, touch):  # type: ignore[no-untyped-def]
 def kept(place, touch, h, fall):  # type: ignore[no-untyped-def]
     """Overlap that a pressed contact keeps: some times ½ r (ω h)² of both bodies, by which turning parts them [m].
 
-    And a share of the ``fall`` of a step.
+    And a share of the ``fall`` of a step. What is rounded turns about where its rounding is from: a wheel that rolls is
+    not parted from the road.
     """
-    a, b = floats(place[BODY_A], BODY_WORDS), floats(place[BODY_B], BODY_WORDS)
-    ra, rb = math.hypot(touch[ARM_A], touch[ARM_A + 1]), math.hypot(touch[ARM_B], touch[ARM_B + 1])
-    return 0.5 * _KEPT * (ra * (a[SPIN] * h) ** 2 + rb * (b[SPIN] * h) ** 2) + _OF_FALL * fall
+    parted = 0.0
+    for side in range(2):
+        arm, body = (ARM_A, BODY_A) if side == 0 else (ARM_B, BODY_B)
+        inwards = (2 * side - 1) * touch[ROUNDED + side]
+        x, y = touch[arm] + inwards * touch[NORMAL], touch[arm + 1] + inwards * touch[NORMAL + 1]
+        parted += math.hypot(x, y) * (floats(place[body], BODY_WORDS)[SPIN] * h) ** 2
+    return 0.5 * _KEPT * parted + _OF_FALL * fall
 
 
 @kernel

@@ -10,9 +10,20 @@ what outer forces do in ½ h - τ.
 from sim.chipmunk import BODY_WORDS, MASS_INVERSE, SPIN, VX
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.blow import striking_mass, sum_of
 from sim.kernels.bodies import load_positions, move
 from sim.kernels.inertia import moment_of
-from sim.kernels.layout import GAP, INVERSE_M, MOVE, OTHER_START, STRIKE, SUDDEN, WHOLE_STEP
+from sim.kernels.layout import (
+    GAP,
+    INVERSE_M,
+    LEDGER_ELASTIC,
+    LEDGER_KINETIC,
+    MOVE,
+    OTHER_START,
+    STRIKE,
+    SUDDEN,
+    WHOLE_STEP,
+)
 from sim.kernels.noted import NOTES_WORDS, SPEED, TIES_COUNT
 from sim.kernels.others import pushed, touched, which
 from sim.kernels.rows import own_velocity
@@ -20,23 +31,33 @@ from sim.kernels.tie_blows import catches, lateness_of
 from sim.kernels.ties import OWNER, address_of, tie_at
 from sim.memory import floats, integers, kernel
 
+# Of the energy with which something strikes: what a structure has that hardly moves, though it does so in parts.
+_QUIET = 1e-2
+
 
 @kernel
 def lateness(head):  # type: ignore[no-untyped-def]
     """How long ago those that strike have touched, or a support was set moving, at most the last move [s]."""
-    late, c = 0.0, head
+    late, energy, c = 0.0, sum_of(head, LEDGER_KINETIC) + sum_of(head, LEDGER_ELASTIC), head
     while c != 0:
         t = views.control(c)
-        touches, settings = views.touches(t), views.settings(t)
-        # Within the parts of the last step nothing came unseen, and their velocities do not lead back through it.
-        for k in range(0 if t[at.AFTER_PARTS] == 1 else t[at.CONTACTS]):
+        places, touches, settings = views.places(t), views.touches(t), views.settings(t)
+        most, struck = settings[MOVE], 0.0
+        for k in range(t[at.CONTACTS]):
+            if touches[k, STRIKE] > 0.0:
+                struck = max(struck, 0.5 * striking_mass(places[k]) * touches[k, STRIKE] ** 2)
+        # Parts see what comes near what moves, and their velocities do not lead back through a step.
+        seen = t[at.AFTER_PARTS] == 1 and energy > _QUIET * struck
+        if t[at.AFTER_PARTS] == 1 and not seen:
+            most = settings[WHOLE_STEP]
+        for k in range(0 if seen else t[at.CONTACTS]):
             if touches[k, STRIKE] > 0.0:
                 late = max(late, -touches[k, GAP] / touches[k, STRIKE])
         late = max(late, lateness_of_ties(c))
         if t[at.JERKED] == 1 and settings[SUDDEN] > 0.0:
             late = settings[MOVE]
         # A step that is shorter than the last one may have moved bodies back.
-        late = min(late, max(settings[MOVE], 0.0))
+        late = min(late, max(most, 0.0))
         c = t[at.NEXT]
     return late
 

@@ -101,7 +101,7 @@ _FIRST_ADDRESS = 47
     BODY_KEYS,  # hash table from a body's address …
     BODY_VALUES,  # … to its index
     PLACES,  # (room, 8) int64: contacts, see `contacts`
-    TOUCHES,  # (room, 31)
+    TOUCHES,  # (room, 33)
     PATTERN,  # (bodies, 3): forces of the load pattern for a load factor of 1
     IMAGE,  # (bodies, 3): H⁻¹ of it
     BEGUN_AT,  # (bodies, 3): positions at the start of a step that is taken in parts
@@ -202,10 +202,10 @@ PLACE_WORDS = 8
 # restitution alone, speed with which bodies struck each other in this contact; how far the two shapes reach from their
 # bodies' centres, and their restitution, for contacts that come within the step; half the way from Chipmunk's point on
 # a to that on b; the two masses that Chipmunk gave the contact; what share of the way from a's point to b's it acts at;
-# what loose bodies gave to its velocity when it was solved last.
+# what loose bodies gave to its velocity when it was solved last; by what radius either shape is rounded there.
 NORMAL, ARM_A, ARM_B, FRICTION, SURFACE, WANTED, PUSH = 0, 2, 4, 6, 7, 8, 9
 CACHED, OTHER_START, B_START, GAP, EARLIER, BOUNCE, STRIKE = 10, 12, 14, 16, 17, 19, 20
-REACH, RETURN, HALF, MASSES, MEETING, SOLVED = 21, 23, 24, 26, 28, 29
-TOUCH_WORDS = 31
+REACH, RETURN, HALF, MASSES, MEETING, SOLVED, ROUNDED = 21, 23, 24, 26, 28, 29, 31
+TOUCH_WORDS = 33
 # Distance of surfaces that cannot meet before contacts are found anew; it stays that, however they move [m].
 FAR = math.inf

@@ -23,6 +23,7 @@ MODULES = {
 }
 INTERACTION = Interaction(SECTION, MATERIAL)
 FLANGED = Interaction(parse_section("IPE 300"), MATERIAL)
+HOLLOW = Interaction(parse_section("RHS 100x60x3 mm"), MATERIAL)
 
 
 def capped() -> ElasticPlastic:
@@ -229,6 +230,18 @@ def test_interacting_forces_stay_on_the_surface(exact: Interaction, path: list[n
         force, _ = point.respond(10.0 * q)
         assert float(point.law.surface.value(*force)) <= 1.0 + 1e-9  # type: ignore[attr-defined]
         point.commit(10.0 * q)
+
+
+@pytest.mark.parametrize("exact", [INTERACTION, FLANGED, HOLLOW], ids=["rectangle", "IPE", "RHS"])
+def test_a_force_on_the_surface_is_its_own_nearest_point(exact: Interaction) -> None:
+    """It is outside by rounding or not at all: which facet it exceeds most must not be left to rounding, too."""
+    generator, law = np.random.default_rng(1), interacting(exact)
+    limit, k = np.array(law.capacities()), np.array(law.stiffness)
+    for _ in range(2000):
+        trial = generator.normal(size=3) * generator.uniform(0.5, 40.0) * limit
+        force, _ = Point(law).respond(trial / k)
+        again, _ = Point(law).respond(force / k)
+        assert np.abs((again - force) / limit).max() <= 1e-9
 
 
 def test_interacting_tangent_is_the_derivative() -> None:

@@ -57,14 +57,15 @@ def nearest(facets, n, r, kN, kM, rounding, N, M, i):  # type: ignore[no-untyped
     The search goes from edge to edge, from facet ``i`` if (N, M) exceeds it.
     """
     if i < 0 or excess(facets, n, i, r, N, M) <= rounding:
-        most = furthest(facets, n, r, N, M)
-        if most <= rounding:
+        if furthest(facets, n, r, N, M) <= rounding:
             return -1, -1, 0.0, 0.0
-        i = 0
+        most = rounding
         for k in range(n):
-            if excess(facets, n, k, r, N, M) >= 0.999999 * most:
-                i = k
-                break
+            beyond = excess(facets, n, k, r, N, M)
+            if beyond > most:
+                i, most = k, beyond
+        if most <= rounding:  # sums in another order, as fast mathematics may have them, differ by that
+            return -1, -1, 0.0, 0.0
     over = 0.0
     for _ in range(n):
         ai, bi = facets[i], facets[n + i]

@@ -21,9 +21,8 @@ def add_joints(
     joints = {}
     for name, joint in scene.joints.items():
         a, b = (space.static_body if body == GROUND else bodies[body] for body in joint.between)
-        joints[name] = made = _ductile(joint, a, b, scheme)
-        made.collide_bodies = False
-        space.add(made)
+        joints[name] = _ductile(joint, a, b, scheme)
+        space.add(joints[name])
     return joints
 
 

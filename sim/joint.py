@@ -36,6 +36,9 @@ class DuctileJoint(JointReadings):
     With x along ``direction`` and y to the left of it, N > 0 goes with b moving along +x, away from a; Q > 0 with b
     moving along +y, past a; M > 0 with b turning counter-clockwise against a. What the joint does to b is -N, -Q, -M.
 
+    While it holds, its bodies do not collide with each other, for it stands for all that is between them: unlike other
+    constraints it begins with ``collide_bodies = False``.
+
     Parameters
     ----------
     a, b : pymunk.Body
@@ -113,6 +116,7 @@ class DuctileJoint(JointReadings):
         self._structure: Structure | None = None
         self._index = 0
         self._attach(a, b)
+        self.collide_bodies = False
         self.ask_for_structure()
 
     def _attach(self, a: pymunk.Body, b: pymunk.Body) -> None:

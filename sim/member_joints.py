@@ -114,8 +114,8 @@ class MemberJoints:
         return joined
 
     def _apart(self, joint: DuctileJoint) -> DuctileJoint:
-        if self._ground in (joint.a, joint.b):
-            joint.collide_bodies = False  # a foot stands in the ground that holds it
+        # Neighbours pass through each other until they have come apart, see `sim.shapes`; a foot stands in the ground.
+        joint.collide_bodies = self._ground not in (joint.a, joint.b)
         return joint
 
     def _beyond(self, node: str) -> pymunk.Body | None:

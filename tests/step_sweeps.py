@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 import pymunk
 import sudden_cases as sudden
+from crash_cases import into_wall
 from held_cases import HELD
 from sudden_cases import BEAM
 from vehicle_cases import post_hit
@@ -106,6 +107,8 @@ CASES: dict[str, Callable[[int, int], tuple[float, ...]]] = {
     "car of 540 kg on springs hits a post at 10 m/s: furthest [m], plastic work [J]": lambda r, n: post_hit(r, n)[:2],
     "the same, motors of 200 N m drive it on": lambda rate, n: post_hit(rate, n, torque=200.0)[:2],
     "the same at 20 m/s, without motors": lambda rate, n: post_hit(rate, n, 20.0)[:2],
+    "frame of 340 kg flies into a wall at 8 m/s, N-Q-M interaction: plastic work [J]": into_wall,
+    "the same at 15 m/s, fibres": lambda rate, n: into_wall(rate, n, 15.0, "fibre"),
     **HELD,
 }
 

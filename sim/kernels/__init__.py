@@ -15,6 +15,7 @@
 | ``tie_blows`` | blows that such constraints give: what a rope catches, say |
 | ``restitution``, ``overlap`` | no more bounce than there is energy for; taking out overlap |
 | ``owners``, ``others`` | which structures are solved together, and the bodies that move with them |
+| ``pushes`` | where steps in parts leave bodies when the next step has another length |
 | ``commit``, ``halfway`` | the end of a step: plastic state, breaking, what the joints bore |
 | ``energy``, ``guard``, ``strained`` | the ledger, and no energy from nowhere; what was strained before |
 | ``resolved`` | the average-acceleration rule only where it resolves how bodies turn |

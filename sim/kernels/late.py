@@ -25,7 +25,8 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.noted import NOTES_WORDS, SPEED, TIES_COUNT
-from sim.kernels.others import pushed, touched, which
+from sim.kernels.others import touched, which
+from sim.kernels.pushes import pushed
 from sim.kernels.rows import own_velocity
 from sim.kernels.tie_blows import catches, lateness_of
 from sim.kernels.ties import OWNER, address_of, tie_at

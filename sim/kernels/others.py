@@ -9,8 +9,6 @@ import numpy as np
 
 from sim.chipmunk import (
     ANGLE,
-    ARBITER_BODY_A,
-    ARBITER_BODY_B,
     ARBITER_CONTACTS,
     ARBITER_COUNT,
     ARBITER_WORDS,
@@ -28,7 +26,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.bodies import move, put
+from sim.kernels.bodies import put
 from sim.kernels.layout import BODY_A, BODY_B, CACHED, OWNER_A, OWNER_B
 from sim.kernels.moves import way_to_line
 from sim.kernels.noted import NOTES_WORDS, SPEED, TIES_COUNT, note_struck
@@ -36,7 +34,7 @@ from sim.kernels.owners import next_arbiter
 from sim.kernels.reached import MOST_LINKED, index_in, reach
 from sim.kernels.rows import push_loose
 from sim.kernels.ties import OWNER, TIE_WORDS, address_of, is_of, tie_at
-from sim.memory import floats, inlined, integers, kernel
+from sim.memory import floats, integers, kernel
 
 
 @kernel
@@ -224,61 +222,3 @@ def show(body, place, h, whole):  # type: ignore[no-untyped-def]
     place[0] += x
     place[1] += y
     put_back(body, place, h, whole)
-
-
-@kernel
-def even_out(t, h, whole):  # type: ignore[no-untyped-def]
-    """After a step of length ``whole`` in parts, take back what pseudo-velocities did too much in a move of ``h``.
-
-    They lead to where the last part ends in a move as long as that step; velocities do the rest.
-    """
-    body_at, begun, over = views.body_at(t), views.per_body(t, at.BEGUN_AT), h - whole
-    for i in range(t[at.MOVING]):
-        b = floats(body_at[i], BODY_WORDS)
-        x, y, turn = b[X] - begun[i, 0] - h * b[VX], b[X + 1] - begun[i, 1] - h * b[VX + 1], b[ANGLE] - begun[i, 2]
-        move(body_at[i], -over / h * x, -over / h * y, -over / h * (turn - h * b[SPIN]))
-    for k in range(t[at.PUSHED]):
-        body, push = integers(t[at.PUSHES] + 32 * k, 1)[0], floats(t[at.PUSHES] + 32 * k, 4)
-        if touches(t, body):
-            move(body, -over * push[1], -over * push[2], -over * push[3])
-            push[1], push[2], push[3] = whole / h * push[1], whole / h * push[2], whole / h * push[3]
-
-
-@kernel
-def touches(t, body):  # type: ignore[no-untyped-def]
-    """Whether the body at an address, which may be no body any more, touches a structure."""
-    body_at = views.body_at(t)
-    for i in range(t[at.MOVING]):
-        arbiter = integers(body_at[i], BODY_FULL_WORDS)[ARBITERS]
-        while arbiter != 0:
-            w = integers(arbiter, ARBITER_WORDS)
-            if w[ARBITER_BODY_A] == body or w[ARBITER_BODY_B] == body:
-                return True
-            arbiter = next_arbiter(arbiter, body_at[i])
-    return False
-
-
-@inlined
-def note_pushes(t):  # type: ignore[no-untyped-def]
-    """Note with which pseudo-velocities the loose bodies at the contacts go into their next move."""
-    places, count = views.places(t), 0
-    t[at.PUSHED] = 0
-    for k in range(t[at.CONTACTS]):
-        if places[k, OWNER_A] != 0 and places[k, OWNER_B] != 0:
-            continue
-        body = places[k, BODY_A] if places[k, OWNER_A] == 0 else places[k, BODY_B]
-        if pushed(t, body) < 0:
-            b, row = floats(body, BODY_FULL_WORDS), floats(t[at.PUSHES] + 32 * count, 4)
-            integers(t[at.PUSHES] + 32 * count, 1)[0] = body
-            row[1], row[2], row[3] = b[BIAS_VX], b[BIAS_VX + 1], b[BIAS_SPIN]
-            count += 1
-            t[at.PUSHED] = count
-
-
-@kernel
-def pushed(t, body):  # type: ignore[no-untyped-def]
-    """Which row of those noted is a loose body's, or -1."""
-    for k in range(t[at.PUSHED]):
-        if integers(t[at.PUSHES] + 32 * k, 1)[0] == body:
-            return k
-    return -1

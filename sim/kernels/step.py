@@ -17,10 +17,10 @@ from sim.kernels.moves import carry, turn_back
 from sim.kernels.near import drop, drop_all, gather, let_come
 from sim.kernels.newton import restart
 from sim.kernels.noted import note_end, note_start
-from sim.kernels.others import even_out, note_pushes
 from sim.kernels.owners import constraints_with
 from sim.kernels.part import conclude
 from sim.kernels.parts import begin_whole, close_step, take_parts
+from sim.kernels.pushes import even_out, note_pushes
 from sim.kernels.refusal import check_bodies, keep, refuse, roll_back
 from sim.kernels.resolved import prepare_step
 from sim.kernels.rows import are_solved, note_solved
@@ -42,12 +42,11 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     for i in range(BEFORE):
         settings[BEFORE + i] = settings[i]
     last_step, last_move = settings[at.STEP], settings[at.NEXT_MOVE]
-    moved = h - settings[at.WHOLE_STEP] + last_move if t[at.PARTS] > 1 else h
+    moved = last_move if t[at.PARTS] > 1 else h
     ratio = h / last_step if last_step > 0.0 else 0.0
     settings[at.STEP], settings[at.NEXT_MOVE] = h, h
-    settings[at.STEP_RATIO] = h / last_move if last_move > 0.0 else 1.0
     if t[at.PARTS] > 1 and h != settings[at.WHOLE_STEP] and h > 0.0:
-        even_out(t, h, settings[at.WHOLE_STEP])
+        moved += even_out(t, h, settings[at.WHOLE_STEP])
     settings[at.WHOLE_RATIO] = h / settings[at.WHOLE_STEP] if settings[at.WHOLE_STEP] > 0.0 else 1.0
     settings[at.WHOLE_STEP] = h
     t[at.AFTER_PARTS] = 1 if t[at.PARTS] > 1 else 0

@@ -64,7 +64,7 @@ class Readings:
     @property
     def yielding(self) -> np.ndarray:
         """Whether the axial, shear and rotational part of each joint gave way in the last step, (n, 3) bool."""
-        reach = self._settings[at.NEXT_MOVE] * (self._settings[at.BETA] + self._settings[at.DELTA])
+        reach = self._settings[at.TANGENT_REACH]
         viscous = self.tables[at.DAMPING] / reach if reach > 0.0 else 0.0
         tangent = self.tables[at.RESPONSE][:, [at.TANGENT, at.TANGENT + 3, at.TANGENT + 5]] - viscous
         elastic = self.tables[at.STIFFNESS][:, [0, 3, 5]]

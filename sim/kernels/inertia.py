@@ -60,7 +60,7 @@ def add_inertia(t):  # type: ignore[no-untyped-def]
     damping, geometry, settings = views.damping(t), views.geometry(t), views.settings(t)
     excess, velocity = views.per_body(t, at.SOLUTION), views.per_body(t, at.VELOCITY)
     moving, move, any_pulls = t[at.MOVING], settings[at.NEXT_MOVE], False
-    factor, reach = settings[at.STEP] * move, move * (settings[at.BETA] + settings[at.DELTA])
+    factor, reach = settings[at.STEP] * move, settings[at.TANGENT_REACH]
     t[at.TURNING] = 0
     for k in range(t[at.JOINTS]):
         x, y = impulse[k, 0], impulse[k, 1]

@@ -114,7 +114,7 @@ CONTROL_WORDS = _FIRST_ADDRESS + 49
 
 # Settings (float64); the spread ones are those of the load pattern's spring, see `spread`; BETA and DELTA of a step are
 # chosen from the wanted ones.
-STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL, STEP_RATIO, ROUNDING = 0, 1, 2, 3, 4, 5, 6
+STEP, BETA, DELTA, TOLERANCE, LAST_RESIDUAL, TANGENT_REACH, ROUNDING = 0, 1, 2, 3, 4, 5, 6
 SPREAD_STIFFNESS, SPREAD_GAP, SPREAD_IMPULSE = 7, 8, 9
 WANTED_BETA, WANTED_DELTA = 10, 11
 # Chipmunk's step, of which `STEP` may be a part, and over the last one; energy of a blow that lasts, see `blow`.

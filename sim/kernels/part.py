@@ -39,7 +39,6 @@ from sim.kernels.layout import (
     OTHER_START,
     RETURN,
     STEP,
-    STEP_RATIO,
     WANTED,
     WHERE,
     WHOLE_STEP,
@@ -160,7 +159,6 @@ def end_part(head, others, before, pushes, move_on, step):  # type: ignore[no-un
         settings = views.settings(t)
         take_up(t, ratio)
         averaged = settings[BETA] != 0.0
-        settings[STEP_RATIO] = ratio if averaged else move_on / h
         settings[STEP], settings[NEXT_MOVE] = step, move_on
         scale_all(views.per_body(t, at.EXTERNAL), ratio)
         if t[at.SHIFTED] == 1:

@@ -15,6 +15,7 @@ from sim.kernels.layout import (
     RESULT_WORDS,
     STEP,
     TANGENT,
+    TANGENT_REACH,
 )
 from sim.memory import call_law, floats, inlined, kernel
 
@@ -39,7 +40,8 @@ def respond(t):  # type: ignore[no-untyped-def]
     gradient, deformation = views.gradient(t), views.per_joint(t, at.DEFORMATION)
     residual, velocity, response = views.per_joint(t, at.RESIDUAL), views.per_body(t, at.VELOCITY), views.response(t)
     reach, error, size, breakable = reach_of(t), 0.0, 0.0, t[at.BREAKABLE] == 1
-    soft, result = views.settings(t)[at.SOFT], views.result(t)
+    settings, result = views.settings(t), views.result(t)
+    soft, settings[TANGENT_REACH] = settings[at.SOFT], reach
     for k in range(t[at.JOINTS]):
         x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         # The joint's row of residuals holds q* until they are known.
@@ -71,6 +73,7 @@ def respond_along_lines(t, tangents, first):  # type: ignore[no-untyped-def]
     gradient, deformation = views.gradient(t), views.per_joint(t, at.DEFORMATION)
     velocity, response = views.per_body(t, at.VELOCITY), views.response(t)
     reach, error, size, there = reach_of(t), 0.0, 0.0, floats(t[at.SCRATCH], RESPONSE_WORDS)
+    views.settings(t)[TANGENT_REACH] = reach
     for k in range(t[at.JOINTS]):
         x, y, z = rates(gradient, k, velocity, joint_bodies[k, 0], velocity, joint_bodies[k, 1])
         d00, d01, d02 = tangents[k, first], tangents[k, first + 1], tangents[k, first + 2]
@@ -91,11 +94,12 @@ def respond_along_lines(t, tangents, first):  # type: ignore[no-untyped-def]
 @kernel
 def strip_tangents(t):  # type: ignore[no-untyped-def]
     """Take the viscous part out of the tangents that the last step ended with."""
-    response, damping, old_reach = views.response(t), views.damping(t), reach_of(t) / views.settings(t)[at.STEP_RATIO]
+    response, damping, old_reach = views.response(t), views.damping(t), views.settings(t)[TANGENT_REACH]
     for k in range(t[at.JOINTS]):
-        response[k, TANGENT] -= damping[k, 0] / old_reach
-        response[k, TANGENT + 3] -= damping[k, 1] / old_reach
-        response[k, TANGENT + 5] -= damping[k, 2] / old_reach
+        # A joint that is new has none.
+        response[k, TANGENT] = max(response[k, TANGENT] - damping[k, 0] / old_reach, 0.0)
+        response[k, TANGENT + 3] = max(response[k, TANGENT + 3] - damping[k, 1] / old_reach, 0.0)
+        response[k, TANGENT + 5] = max(response[k, TANGENT + 5] - damping[k, 2] / old_reach, 0.0)
 
 
 @inlined

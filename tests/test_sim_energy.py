@@ -6,7 +6,7 @@ import math
 import pymunk
 import pytest
 from bodies import kinetic, spring
-from hard_cases import PIECE, Case, chain, largest, law, rests
+from hard_cases import MASS, PIECE, Case, chain, largest, law, rests
 
 from sim import DuctileJoint, ElasticPlastic, Energy, Limits, Structure, energy
 from sim.kernels import layout as at
@@ -232,3 +232,17 @@ def test_a_longer_step_takes_back_all_of_what_a_contact_gave_in_a_shorter_one() 
     for _ in range(4):
         case.space.step(1 / 30)
         assert ball.kinetic_energy <= 5.0
+
+
+@pytest.mark.parametrize("speed", [0.01, -0.01])
+def test_a_kick_is_all_that_a_kick_brings(speed: float) -> None:
+    """Up or down, on the tip of a bar that has come to rest under its weight; whole steps damp all of it."""
+    case = chain(10)
+    for _ in range(300):
+        case.space.step(case.dt)
+    before, case.steps = case.structure.energy, 3
+    case.bodies[-1].velocity += (0.0, speed)
+    check(case)
+    now, brought = case.structure.energy, 0.5 * MASS * speed**2
+    assert now.external - before.external == pytest.approx(brought, rel=0.02)
+    assert now.numerical - before.numerical == pytest.approx(brought, rel=0.02)

@@ -25,6 +25,10 @@ Where implicit Euler's last move was longer or shorter than this step, that is h
 its velocities; between whole steps but for the motion as a rigid body of a structure that nothing holds, which deforms
 no joint.
 
+A body that is given another velocity V₀ by a kick ΔV between two steps is moved by it from the next move on only. So
+forces from outside have done work along V̄ - ½ ΔV. The kick's own is that along V₀ - ½ ΔV, as if nothing had resisted
+it; where energy would come from nowhere, it is that along V̄ - ½ ΔV, too.
+
 A contact's impulse j does the work j v̄ on each of two bodies. What one gives and the other does not get is lost to
 contact: - j ½ (v₀ + v₁) with the velocities of one relative to the other, which is the loss in an impact by Kelvin's
 formula, and friction. So what a loose body loses is to the last digit what the structure is given.
@@ -96,7 +100,8 @@ def work_of_shifts(t, k, column):  # type: ignore[no-untyped-def]
 def close(c, t):  # type: ignore[no-untyped-def]
     """Book what bodies and contacts did in a step; the joints' part is booked by `commit`.
 
-    Returns by how much less work from outside is booked because moves were of other lengths than the step.
+    Returns by how much less work from outside is booked because moves were of other lengths than the step, and because
+    kicks are booked as if nothing had resisted them.
     """
     ledger, settings, body_at = views.ledger(t), views.settings(t), views.body_at(t)
     start, end = views.per_body(t, at.START_VELOCITY), views.per_body(t, at.WRITTEN)
@@ -105,6 +110,7 @@ def close(c, t):  # type: ignore[no-untyped-def]
     solved, factor = views.per_body(t, at.VELOCITY), settings[SPREAD_IMPULSE]
     touching, driven, turns = t[at.CONTACTS] > 0 or t[at.HEAD] != 0, t[at.SPREAD] == 1, t[at.TURNING] == 1
     before, after, outside, turning, contact_work, less = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    last, whole, unmoved, kicks = views.per_body(t, at.LAST_VELOCITY), t[at.PARTS] == 1, 0.0, 0.0
     for i in range(t[at.MOVING]):
         moment = moment_of(floats(body_at[i], BODY_WORDS)) if turns else weight[i, INERTIA_I]
         for axis in range(3):
@@ -114,6 +120,10 @@ def close(c, t):  # type: ignore[no-untyped-def]
             before += mass * v0 * v0
             after += mass * v1 * v1
             outside += external[i, axis] * mean
+            if whole and v0 != last[i, axis]:
+                kick = v0 - last[i, axis]
+                unmoved += 0.5 * external[i, axis] * kick
+                kicks += 0.5 * mass * kick * (v1 - v0)
             if touching:
                 contact_work += struck[i, axis] * mean
             if driven:
@@ -122,6 +132,9 @@ def close(c, t):  # type: ignore[no-untyped-def]
                 turning += mass * (end[i, axis] - solved[i, axis]) * mean
                 if axis == 2:
                     turning -= (weight[i, INERTIA_I] - mass) * solved[i, axis] * mean
+    # A kick has not moved any body yet.
+    outside -= unmoved
+    ledger[LEDGER_NUMERICAL] -= unmoved
     before_step, after_step = 1.0 - settings[MOVE] / settings[STEP], 1.0 - settings[NEXT_MOVE] / settings[STEP]
     if settings[BETA] == 0.0 and (before_step != 0.0 or after_step != 0.0):
         # Velocities carry forces another way than that of a step.
@@ -147,7 +160,7 @@ def close(c, t):  # type: ignore[no-untyped-def]
     ledger[LEDGER_KINETIC] = 0.5 * after
     ledger[LEDGER_NUMERICAL] -= turning
     ledger[LEDGER_CONTACT] += given - arrived
-    return less
+    return less + max(kicks, 0.0)
 
 
 @kernel

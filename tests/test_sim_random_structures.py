@@ -6,8 +6,11 @@ from watched_cases import watch
 
 from sim import IMPLICIT_EULER
 
+# Stiff ones that are pushed, set going or struck while they ring, some in steps that change, or kicked under tension.
+HARD = (65, 141, 192, 261, 296, 371)
 
-@pytest.mark.parametrize("seed", range(11, 31))
+
+@pytest.mark.parametrize("seed", [*range(11, 31), *HARD])
 def test_all_is_well_by_the_default_scheme(seed: int) -> None:
     """Energy is not created, momenta are kept, no joint bears too much, every step converges and none is refused."""
     assert watch(RandomCase(seed, IMPLICIT_EULER)).faults(default=True) == []

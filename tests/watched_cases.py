@@ -14,8 +14,9 @@ from sim import Structure
 from sim.laws import FibreSection, InteractionPlastic
 from sim.step_back import SolverError
 
-# What is held to be rounding, entry by entry of `Watched`; energy that the second-order scheme may create.
-_ROUNDING = {"created": 1e-12, "outside": 1e-9, "gap": 1e-11, "momentum": 1e-13, "angular": 1e-11}
+# What is held to be rounding, entry by entry of `Watched` (places of bodies are rounded to so much of what the stiffest
+# joints bear); energy that the second-order scheme may create.
+_ROUNDING = {"created": 1e-12, "outside": 1e-7, "gap": 1e-11, "momentum": 1e-13, "angular": 1e-11}
 _MAY_CREATE = 0.15
 # What rounding of places stores in the stiffest joints is nothing against it [J].
 _LITTLE = 1e-3

@@ -95,9 +95,11 @@ def followed_in_parts(t):  # type: ignore[no-untyped-def]
 def may_swing(t):  # type: ignore[no-untyped-def]
     """Whether what came suddenly is to be followed without damping; after forces, once what is stiff has settled."""
     settings = views.settings(t)
-    if settings[UNDAMPED] == AFTER_IMPULSES or settings[BETA] != 0.0 or settings[BEFORE + BETA] != 0.0:
+    if settings[UNDAMPED] == AFTER_IMPULSES:
         return True
-    return settings[BLOW_AGE] > 0.0 and is_slow(t)
+    if settings[BLOW_AGE] == 0.0:
+        return False
+    return settings[BETA] != 0.0 or settings[BEFORE + BETA] != 0.0 or is_slow(t)
 
 
 @kernel

@@ -48,7 +48,6 @@ from sim.kernels.layout import (
     NEXT_MOVE,
     PUSH,
     STEP,
-    STEP_RATIO,
     STRIKE,
     UNDAMPED,
     UNEVEN,
@@ -166,7 +165,6 @@ def open_step(head, late, moves, steps):  # type: ignore[no-untyped-def]
         settings, touches = views.settings(t), views.touches(t)
         ratio = steps[0] / settings[STEP]
         settings[STEP], settings[NEXT_MOVE] = steps[0], moves[0]
-        settings[STEP_RATIO] *= moves[0] / settings[WHOLE_STEP]
         settings[MOVE] = max(settings[MOVE] - late, min(settings[MOVE], moves[-1]))
         settings[UNEVEN] = 1.0
         t[at.AHEAD], t[at.PUSHED_APART] = 1, 1
@@ -217,13 +215,15 @@ def begin_whole(head):  # type: ignore[no-untyped-def]
     """Begin a step that is as short as a part by the rule for those, if something came suddenly in it."""
     if views.settings(views.control(head))[BLOW_AGE] > 0.0:
         return
-    begin_schemes(head)
     c = head
     while c != 0:
         t = views.control(c)
         settings = views.settings(t)
-        if settings[BETA] != 0.0 and settings[BEFORE + BETA] == 0.0:
+        beta = settings[BETA]
+        begins = choose_for_part(t, LONGEST_PART) and settings[BEFORE + BETA] == 0.0
+        if begins:
             settings[MOVE] = settings[STEP]
+        if begins or settings[BETA] != beta:
             prepare(t)
         c = t[at.NEXT]
 

@@ -14,13 +14,24 @@ energy that there is, the step is taken by implicit Euler.
 Implicit Euler finds deformations at the end of a move instead, ½ h J V further on, so the step after one of its own is
 averaged again where that is little: not while anything in it moves faster than the steps resolve. A structure that
 moved before there were joints begins with a step of implicit Euler, too. In the default scheme, which averages only
-after what came suddenly, what follows forces is of implicit Euler from then on.
+after what came suddenly, what follows forces is of implicit Euler from then on, and what follows impulses once parts
+are too long for what has been averaged.
 """
 
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.kinematics import prepare, quadratic, rates
-from sim.kernels.layout import AFTER_FORCES, BETA, DELTA, LEDGER_ELASTIC, LEDGER_KINETIC, ROUNDING, STEP, UNDAMPED
+from sim.kernels.layout import (
+    AFTER_FORCES,
+    BETA,
+    DELTA,
+    LEDGER_ELASTIC,
+    LEDGER_KINETIC,
+    ROUNDING,
+    STEP,
+    UNDAMPED,
+    WANTED_BETA,
+)
 from sim.kernels.lengths import LONGEST_PART
 from sim.memory import inlined, kernel
 
@@ -41,7 +52,7 @@ def prepare_step(t, averaged):  # type: ignore[no-untyped-def]
     strayed = prepare(t) > share * (ledger[LEDGER_KINETIC] + ledger[LEDGER_ELASTIC]) + settings[ROUNDING]
     if strayed:
         settings[BETA], settings[DELTA] = 0.0, 1.0
-        if settings[UNDAMPED] == AFTER_FORCES:
+        if settings[UNDAMPED] == AFTER_FORCES or (averaged and settings[WANTED_BETA] == 0.0):
             settings[UNDAMPED] = 0.0
         prepare(t)
 

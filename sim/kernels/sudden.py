@@ -71,9 +71,10 @@ _ROUNDING = 1e-9
 
 @inlined
 def sudden_energy(t, last_step):  # type: ignore[no-untyped-def]
-    """Energy that comes suddenly in the step that begins, in implicit Euler; 0 while a blow lasts anyway [J].
+    """Energy that comes suddenly in the step that begins, in implicit Euler [J].
 
-    Masses and gradients must be those of the step, and Chipmunk not have applied its forces yet.
+    While a blow lasts that is not damped, only more than its own counts; while another does, none. Masses and gradients
+    must be those of the step, and Chipmunk not have applied its forces yet.
     """
     settings, ledger = views.settings(t), views.ledger(t)
     energy, by_impulses = note_forces(t) if t[at.FORCED] == 1 else (0.0, 0.0)
@@ -83,9 +84,12 @@ def sudden_energy(t, last_step):  # type: ignore[no-untyped-def]
     at_once = max(by_impulses, by_supports if t[at.JERKED] == 1 else 0.0)
     much, wanted = at_once > _MUCH * present, settings[WANTED_BETA] != 0.0
     whole = settings[WHOLE_ONLY] != 0.0 or t[at.SPREAD] == 1 or (wanted and not much)
-    if whole or (settings[BLOW] > 0.0 and settings[OVER_AT] == 0.0):
+    lasting = settings[BLOW] if settings[OVER_AT] == 0.0 else 0.0
+    if whole or (lasting > 0.0 and (wanted or settings[UNDAMPED] == 0.0)):
         return 0.0
-    settings[UNDAMPED] = AFTER_IMPULSES if much else AFTER_FORCES
+    undamped = AFTER_IMPULSES if much else AFTER_FORCES
+    if lasting == 0.0:
+        settings[UNDAMPED] = undamped
     enough = WORTH * present
     if energy > enough and t[at.FREE] == 1:
         enough += WORTH * energy
@@ -96,7 +100,10 @@ def sudden_energy(t, last_step):  # type: ignore[no-untyped-def]
         # So far that is what it would be without joints, which is the most.
         energy = min(energy, with_joints(t) * (last_step / settings[STEP]) ** 2)
     energy = max(energy, by_supports)
-    return energy if enough < energy < math.inf else 0.0
+    if not max(enough, lasting) < energy < math.inf:
+        return 0.0
+    settings[UNDAMPED] = undamped
+    return energy
 
 
 @kernel

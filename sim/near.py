@@ -257,6 +257,8 @@ def _linked_beside(
         linked = _linked(body)
         if not any(isinstance(joint, DuctileJoint) for one in linked for joint in chipmunk.constraints_on(one)):
             found.update(linked)
+    if not found:
+        return found
     loose = sum(body is not None and not chipmunk.constraints_on(body) for body in free)
     return found if len(found) + loose + len(np.unique(touching)) <= MOST_LINKED else set()
 

@@ -99,7 +99,7 @@ def part_lengths(settings, span):  # type: ignore[no-untyped-def]
     rest, reached, count = span - last, 0.0, 0
     moves = np.empty(math.ceil(span / last) + 1)
     while reached < rest:
-        moves[count] = longest(settings, settings[BLOW_AGE] + reached)
+        moves[count] = min(longest(settings, settings[BLOW_AGE] + reached), LONGEST_PART)
         reached += moves[count]
         count += 1
     # What they go too far by is taken from what they are longer than the shortest; if they are not, from their number.

@@ -10,8 +10,12 @@ the one that begins at the middle of the last move lies ½ h V behind where the 
 
 and where it was h V, the rest is made up for; of a structure that nothing holds, in the motion of its bodies relative
 to their centre of mass, which leaves its angular momentum alone; and nothing while something touches it, for that would
-be left behind. Nothing either where the second-order scheme comes from the parts that a blow by contact was taken in:
+be left behind. Only to the end of the last part where the second-order scheme comes from parts after a blow by contact:
 what moves so soon after it is faster than whole steps resolve, and half a whole step of it tears stiff joints open.
+
+And where a step by implicit Euler follows one by the average-acceleration rule, which is wanted, what moves faster than
+these steps resolve goes back to the middle of its last move. There it has the energy that the ledger knows; half a move
+further on it would have (ωh)²/4 times as much as moves.
 """
 
 import math
@@ -25,11 +29,15 @@ from sim.kernels.bare import clear
 from sim.kernels.bodies import move, store_velocities
 from sim.kernels.guard import relative_velocity, rigid_motion
 from sim.kernels.inertia import mass_of, moment_of
-from sim.kernels.layout import BEFORE, BETA, MOMENT, MOVE, UNDAMPED, UNEVEN
+from sim.kernels.kinematics import prepare
+from sim.kernels.layout import BEFORE, BETA, LEDGER_KINETIC, MOMENT, MOVE, UNDAMPED, UNEVEN
+from sim.kernels.resolved import loss_of_joints
 from sim.memory import floats, inlined, kernel
 
 # Over the step: what is rounding.
 _SAME = 1e-9
+# (ωh)² of what a step does not resolve.
+_FAST = 1.0
 
 
 @inlined
@@ -42,11 +50,9 @@ def carry(t, h, last_move, moved, touching):  # type: ignore[no-untyped-def]
     settings[MOVE] = moved
     if last_move > 0.0 and abs(h - last_move) > _SAME * h:
         settings[UNEVEN] = 1.0
-    implicit = settings[BETA] == 0.0
-    rest = (last_move if implicit else 0.5 * (last_move + h)) - moved
+    as_it_was = settings[BETA] == 0.0 or (settings[UNDAMPED] == 0.0 and t[at.AFTER_PARTS] == 1)
+    rest = (last_move if as_it_was else 0.5 * (last_move + h)) - moved
     if last_move == 0.0 or abs(rest) <= _SAME * h or touching or t[at.CONTACTS] != 0:
-        return
-    if settings[UNDAMPED] == 0.0 and not implicit and t[at.AFTER_PARTS] == 1:
         return
     last = views.per_body(t, at.LAST_VELOCITY)
     for i in range(t[at.MOVING], t[at.BODIES]):
@@ -58,7 +64,25 @@ def carry(t, h, last_move, moved, touching):  # type: ignore[no-untyped-def]
         for axis in range(3):
             carried[i, axis] = rest * last[i, axis]
     shift_all(t, carried)
-    settings[MOVE] = last_move if implicit else h
+    settings[MOVE] = last_move if as_it_was else h
+
+
+@kernel
+def come_back(t):  # type: ignore[no-untyped-def]
+    """Have bodies come back to the middle of their last move, if they swing faster than such moves resolve."""
+    settings, last = views.settings(t), views.per_body(t, at.LAST_VELOCITY)
+    if loss_of_joints(t, last) <= _FAST * views.ledger(t)[LEDGER_KINETIC]:
+        return
+    carried, way = views.per_body(t, at.CARRIED), np.empty((t[at.MOVING], 3))
+    for i in range(t[at.MOVING]):
+        for axis in range(3):
+            way[i, axis] = -0.5 * settings[MOVE] * last[i, axis]
+    shift_all(t, way)
+    for i in range(t[at.MOVING]):
+        for axis in range(3):
+            carried[i, axis] += way[i, axis]
+    t[at.CARRYING], settings[MOVE] = 1, 0.0
+    prepare(t)
 
 
 @kernel

@@ -13,7 +13,7 @@ from sim.kernels.inertia import add_inertia
 from sim.kernels.kinematics import take_up
 from sim.kernels.layout import BEFORE, BLOW
 from sim.kernels.links import links_of, note_cached, slacken_bounded
-from sim.kernels.moves import carry, turn_back
+from sim.kernels.moves import carry, come_back, turn_back
 from sim.kernels.near import drop, drop_all, gather, let_come
 from sim.kernels.newton import restart
 from sim.kernels.noted import note_end, note_start
@@ -76,6 +76,9 @@ def begin(c, h):  # type: ignore[no-untyped-def]
     gather(c, t)
     lift_springs(t, 1.0)
     t[at.ALONE] = 1 if not touching and t[at.NEAR] == 0 and has_all_constraints(t) else 0
+    falls_back = settings[at.WANTED_BETA] != 0.0 and settings[BEFORE + at.BETA] != 0.0 and settings[at.BETA] == 0.0
+    if falls_back and t[at.ALONE] == 1 and settings[BLOW] == 0.0 and settings[at.SUDDEN] == 0.0:
+        come_back(t)
 
 
 @kernel

@@ -199,7 +199,7 @@ class RandomCase:
         k = piece.mass * (2.0 * math.pi * 10.0 ** draw.uniform(0.0, 2.0)) ** 2
         makes: dict[str, Callable[[], pymunk.Constraint]] = {
             "motor": lambda: pymunk.SimpleMotor(piece, other, draw.uniform(-30.0, 30.0)),
-            "gear": lambda: pymunk.GearJoint(piece, other, piece.angle - other.angle, 1.0),
+            "gear": lambda: pymunk.GearJoint(piece, other, other.angle - piece.angle, 1.0),
             "pivot": lambda: pymunk.PivotJoint(piece, other, at),
             "pin": lambda: pymunk.PinJoint(piece, other, far, (0.0, 0.0)),
             "spring": lambda: pymunk.DampedSpring(piece, other, far, (0.0, 0.0), self._length, k, 0.02 * k**0.5),

@@ -9,7 +9,7 @@
 | ``residual``, ``newton`` | impulses of the joints: Newton's method with a line search |
 | ``approach``, ``admissible`` | joints made soft where that gets nowhere; none bears more than it can |
 | ``spread`` | a load pattern under displacement control |
-| ``contacts``, ``complement``, ``rows`` | contacts of the structures' bodies, solved through the structures |
+| ``contacts``, ``complement``, ``delassus``, ``rows`` | contacts of structures, solved through the structures |
 | ``active_rows`` | contacts where sweeps, or turns between contacts and joints, would take forever |
 | ``ties``, ``tie_impulses`` | Chipmunk's own constraints at the structures' bodies, solved through the structures |
 | ``tie_blows`` | blows that such constraints give: what a rope catches, say |

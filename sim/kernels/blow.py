@@ -26,7 +26,6 @@ import numpy as np
 from sim.chipmunk import BODY_WORDS, MASS_INVERSE
 from sim.kernels import layout as at
 from sim.kernels import views
-from sim.kernels.complement import relative
 from sim.kernels.layout import (
     AFTER_FORCES,
     AFTER_IMPULSES,
@@ -60,7 +59,7 @@ from sim.kernels.layout import (
 )
 from sim.kernels.lengths import longest, note_shortest
 from sim.kernels.reached import MOST_LINKED, reach
-from sim.kernels.rows import own_velocity
+from sim.kernels.rows import own_velocity, relative
 from sim.kernels.sudden import WORTH
 from sim.kernels.tie_blows import blow_by_ties
 from sim.memory import floats, inlined, kernel

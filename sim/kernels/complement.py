@@ -1,11 +1,7 @@
 """Contact impulses of a group of structures, solved through the structures.
 
-They are solved on
-
-    G = J_c H⁻¹ J_cᵀ + J_c M_e⁻¹ J_cᵀ,   H = M + (β + δ) h² Jᵀ D J,
-
-H for each structure with its present tangents and M_e for loose bodies. Per contact, with relative velocity v along its
-normal n and tangent t, restitution and friction are
+They are solved on G, see `delassus`. Per contact, with relative velocity v along its normal n and tangent t,
+restitution and friction are
 
     j_n ≥ 0,  v_n ≥ v_bounce,  one of them with equality;   |j_t| ≤ μ j_n,  v_t = 0 unless at the limit.
 """
@@ -24,27 +20,23 @@ from sim.chipmunk import (
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.active_rows import relax, solve_directly
-from sim.kernels.bare import clear, hold, rows_of
+from sim.kernels.bare import hold, rows_of
 from sim.kernels.blocks import factorise_matrix, solve
+from sim.kernels.delassus import note_velocities, operator
 from sim.kernels.layout import (
     FAR,
     FRICTION,
     GAP,
-    INDEX_A,
-    INDEX_B,
     INVERSE_I,
     INVERSE_M,
-    OWNER_A,
-    OWNER_B,
     STEP,
-    SURFACE,
     WANTED,
     WHERE,
 )
 from sim.kernels.links import links_of, pull
 from sim.kernels.overlap import push_apart
 from sim.kernels.residual import descend, reach_of
-from sim.kernels.rows import add_row, loose_velocity, move_loose, own_velocity, push_loose, sum_up
+from sim.kernels.rows import loose_velocity, push_loose, sum_up
 from sim.memory import floats, kernel
 
 #: Bare arrays over those that `gather_contacts` gives.
@@ -110,16 +102,38 @@ def touch(head, last):  # type: ignore[no-untyped-def]
 
 @kernel
 def touch_all(head, last, places, touches):  # type: ignore[no-untyped-def]
-    """The same for these contacts."""
-    count = len(places)
+    """The same for these contacts.
+
+    Of many that are near, as corners of bricks are, few are in the way: only those are solved, and what comes to be in
+    the way by that with them.
+    """
+    count, largest = len(places), 0.0
     factorise_group(head)
-    g = operator(places, touches)
-    v, change = np.empty(2 * count), np.zeros(2 * count)
-    for r in range(2 * count):
-        v[r] = relative(places[r >> 1], touches[r >> 1], r)
-    largest = complement(head, places, touches, g, v, change)
-    if not math.isfinite(largest):
-        return NOT_FINITE
+    v, change, needed = np.empty(2 * count), np.zeros(2 * count), np.zeros(count, np.bool_)
+    many = -1 if len(links_of(head)) > 0 else 0
+    note_velocities(head, places, touches, change, v)
+    while many < count and note_needed(places, touches, v, needed) > many:
+        index = np.nonzero(needed)[0]
+        many = len(index)
+        own, own_touches = np.empty((many, at.PLACE_WORDS), np.int64), np.empty((many, at.TOUCH_WORDS))
+        of_own, change_of_own = np.empty(2 * many), np.zeros(2 * many)
+        for m in range(many):
+            k = index[m]
+            for i in range(at.PLACE_WORDS):
+                own[m, i] = places[k, i]
+            for i in range(at.TOUCH_WORDS):
+                own_touches[m, i] = touches[k, i]
+            of_own[2 * m], of_own[2 * m + 1] = v[2 * k], v[2 * k + 1]
+        p, t = bare_places(own), bare_touches(own_touches)
+        largest = max(largest, complement(head, p, t, operator(p, t), of_own, change_of_own))
+        hold(own, own_touches)
+        if not math.isfinite(largest):
+            return NOT_FINITE
+        for m in range(many):
+            change[2 * index[m]] += change_of_own[2 * m]
+            change[2 * index[m] + 1] += change_of_own[2 * m + 1]
+        if many < count:
+            note_velocities(head, places, touches, change, v)
     if len(last) > 0:
         relax(places, touches, change, last)
     c = head
@@ -129,8 +143,19 @@ def touch_all(head, last, places, touches):  # type: ignore[no-untyped-def]
         c = t[at.NEXT]
     if views.control(head)[at.PUSHED_APART] == 0:
         views.control(head)[at.PUSHED_APART] = 1
-        push_apart(head, places, touches, g, v, change)
+        push_apart(head, places, touches, v, change)
     return largest
+
+
+@kernel
+def note_needed(places, touches, v, needed):  # type: ignore[no-untyped-def]
+    """Note which contacts press, or would have to; returns how many."""
+    count = 0
+    for k in range(len(places)):
+        presses = floats(places[k, WHERE], CONTACT_WORDS)[CONTACT_NORMAL_IMPULSE] != 0.0
+        needed[k] = needed[k] or presses or not v[2 * k] >= touches[k, WANTED]
+        count += needed[k]
+    return count
 
 
 @kernel
@@ -141,49 +166,6 @@ def factorise_group(head):  # type: ignore[no-untyped-def]
         t = views.control(c)
         factorise_matrix(t, views.settings(t)[STEP] * reach_of(t))
         c = t[at.NEXT]
-
-
-@kernel
-def relative(place, touch, row):  # type: ignore[no-untyped-def]
-    """Velocity of b relative to a along a row, that of the surface included."""
-    total = loose_velocity(place, touch, row)
-    if place[OWNER_A] != 0:
-        c = place[OWNER_A]
-        total += own_velocity(c, place, touch, row, views.per_body(views.control(c), at.VELOCITY))
-    if place[OWNER_B] != 0 and place[OWNER_B] != place[OWNER_A]:
-        c = place[OWNER_B]
-        total += own_velocity(c, place, touch, row, views.per_body(views.control(c), at.VELOCITY))
-    if row & 1:
-        total += touch[SURFACE]
-    return total
-
-
-@kernel
-def operator(places, touches):  # type: ignore[no-untyped-def]
-    """G for all contacts, row by row, for it is symmetric: by one substitution a row and structure."""
-    rows = 2 * len(places)
-    g = np.zeros((rows, rows))
-    for k in range(rows):
-        place, touch = places[k >> 1], touches[k >> 1]
-        one, two = place[OWNER_A], place[OWNER_B]
-        for side in range(2):
-            c = two if side == 1 else one
-            if c == 0 or (side == 1 and two == one):
-                continue
-            t = views.control(c)
-            solution = views.per_body(t, at.SOLUTION)
-            clear(solution)
-            add_row(c, place, touch, k, 1.0, solution)
-            first = t[at.MOVING]
-            if one == c:
-                first = min(first, place[INDEX_A])
-            if two == c:
-                first = min(first, place[INDEX_B])
-            solve(t, first, solution)
-            for r in range(rows):
-                g[k, r] += own_velocity(c, places[r >> 1], touches[r >> 1], r, solution)
-        move_loose(places, touches, k, g[k])
-    return g
 
 
 @kernel

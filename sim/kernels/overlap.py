@@ -15,6 +15,7 @@ from sim.chipmunk import BIAS_SPIN, BIAS_VX, BODY_FULL_WORDS, BODY_WORDS, MASS_I
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import solve
+from sim.kernels.delassus import respond_to
 from sim.kernels.inertia import mass_of, moment_of
 from sim.kernels.kinematics import rates
 from sim.kernels.layout import (
@@ -40,8 +41,8 @@ _LIGHT, _TURNS, _CENTRE, _SHIFT, _FRAME_WORDS = 0, 1, 2, 4, 7
 
 
 @kernel
-def push_apart(head, places, touches, g, v, change):  # type: ignore[no-untyped-def]
-    """Pseudo-velocities that take out overlap; changes all arrays but the first two."""
+def push_apart(head, places, touches, v, change):  # type: ignore[no-untyped-def]
+    """Pseudo-velocities that take out overlap; changes the arrays ``v`` and ``change`` of as many rows."""
     any_overlap = False
     for k in range(len(places)):
         v[2 * k], v[2 * k + 1] = 0.0, 0.0
@@ -51,9 +52,11 @@ def push_apart(head, places, touches, g, v, change):  # type: ignore[no-untyped-
         return
     frames = frames_of(head)
     of, arms = sides_of(head, frames, places, touches)
+    g = np.zeros((len(v), len(v)))
     for k in range(len(places)):
-        if not bends(places[k], of[k]):
-            g[2 * k] = 0.0
+        if bends(places[k], of[k]):
+            respond_to(places, touches, 2 * k, g[2 * k])
+        else:
             move_loose(places, touches, 2 * k, g[2 * k])
             move_frames(frames, of, arms, touches, k, g[2 * k])
     for _ in range(_SWEEPS):

@@ -14,7 +14,6 @@ from sim.kernels import views
 from sim.kernels.bare import clear
 from sim.kernels.bodies import load_velocities, move, write
 from sim.kernels.commit import commit
-from sim.kernels.complement import relative
 from sim.kernels.contacts import SETTLE, allowed, kept, meet
 from sim.kernels.energy import close
 from sim.kernels.guard import choose_for_part, close_from_below
@@ -44,7 +43,7 @@ from sim.kernels.layout import (
     WHOLE_STEP,
 )
 from sim.kernels.resolved import loss_of_joints, prepare_step
-from sim.kernels.rows import other_velocity, velocity_of_b
+from sim.kernels.rows import other_velocity, relative, velocity_of_b
 from sim.memory import floats, inlined, kernel
 
 # Of the overlap that a space allows: where less is left to a pressed contact, Chipmunk finds it by rounding or not.

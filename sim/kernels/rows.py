@@ -6,7 +6,7 @@ from sim.chipmunk import BODY_FULL_WORDS, MASS_INVERSE, MOMENT_INVERSE, SPIN, VX
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bare import clear
-from sim.kernels.layout import ARM_A, ARM_B, BODY_A, BODY_B, INDEX_A, INDEX_B, NORMAL, OWNER_A, OWNER_B, SOLVED
+from sim.kernels.layout import ARM_A, ARM_B, BODY_A, BODY_B, INDEX_A, INDEX_B, NORMAL, OWNER_A, OWNER_B, SOLVED, SURFACE
 from sim.memory import floats, kernel
 
 
@@ -62,6 +62,21 @@ def own_velocity(c, place, touch, row, velocity):  # type: ignore[no-untyped-def
     if place[OWNER_A] == c:
         v = velocity[place[INDEX_A]]
         total -= dx * v[0] + dy * v[1] + ma * v[2]
+    return total
+
+
+@kernel
+def relative(place, touch, row):  # type: ignore[no-untyped-def]
+    """Velocity of b relative to a along a row, that of the surface included."""
+    total = loose_velocity(place, touch, row)
+    if place[OWNER_A] != 0:
+        c = place[OWNER_A]
+        total += own_velocity(c, place, touch, row, views.per_body(views.control(c), at.VELOCITY))
+    if place[OWNER_B] != 0 and place[OWNER_B] != place[OWNER_A]:
+        c = place[OWNER_B]
+        total += own_velocity(c, place, touch, row, views.per_body(views.control(c), at.VELOCITY))
+    if row & 1:
+        total += touch[SURFACE]
     return total
 
 

@@ -3,6 +3,8 @@
 Nothing that it keeps of the shapes themselves, or of their contacts, is touched.
 """
 
+import math
+
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
@@ -51,3 +53,14 @@ def shift(own: object, body: pymunk.Body, x: float, y: float) -> None:
     """Put a copy to where its body is, moved by ``x`` and ``y``."""
     *turn, right, up = words(body_address(body), BODY_WORDS)[COSINE : ORIGIN + 2].tolist()
     lib.cpShapeUpdate(own, (*turn, right + x, up + y))
+
+
+def place(own: object, angle: float, origin: pymunk.Vec2d) -> None:
+    """Put a copy to where its body would be with that angle [rad], and its own origin there [m]."""
+    c, s = math.cos(angle), math.sin(angle)
+    lib.cpShapeUpdate(own, (c, s, -s, c, *origin))
+
+
+def touch(one: object, other: object) -> bool:
+    """Whether two copies touch where they are."""
+    return bool(lib.cpShapesCollide(one, other).count > 0)

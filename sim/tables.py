@@ -8,6 +8,7 @@ import numpy as np
 import pymunk
 
 from sim import chipmunk
+from sim.abutting import abutting_pairs
 from sim.joint import DuctileJoint
 from sim.kernels import compiled_callbacks
 from sim.kernels import layout as at
@@ -56,6 +57,7 @@ class Tables:
         settings = np.zeros(at.SETTINGS_WORDS)
         settings[[at.BETA, at.DELTA]] = settings[[at.WANTED_BETA, at.WANTED_DELTA]] = joints[0].scheme
         settings[at.TOLERANCE], settings[at.SOFT], settings[at.MOMENT] = tolerance**2, 1.0, np.nan
+        abutting = abutting_pairs(joints, bodies)
         keys, values = hash_table([chipmunk.body_address(body) for body in bodies])
         per_joint = (at.DEFORMATION, at.LIGHTNESS, at.IMPULSE, at.RESIDUAL, at.SLOPE)
         velocities = (at.VELOCITY, at.WRITTEN, at.START_VELOCITY, at.LAST_VELOCITY, at.LAST_POSITION, at.BEGUN_AT)
@@ -94,6 +96,7 @@ class Tables:
                 at.RESULT: np.zeros((n, at.RESULT_WORDS)),
                 at.BODY_KEYS: keys,
                 at.BODY_VALUES: values,
+                at.ABUTTING_PAIRS: np.append(abutting, 0),
             }
         )
         # Where the bodies were before is not known.
@@ -103,7 +106,7 @@ class Tables:
         self.control[at.OWN_CLASS] = compiled_callbacks().functions.ctypes.data
         self.control[at.DAMPED] = int(self[at.DAMPING].any())
         self.control[at.BREAKABLE] = int(np.isfinite(self[at.LIMITS][:, :3]).any())
-        self.control[at.HASH_LENGTH] = len(keys)
+        self.control[at.HASH_LENGTH], self.control[at.ABUTTING] = len(keys), len(abutting)
         self.control[at.SHARED] = int(sorted(slot for slot in slots if slot >= 0) != list(range(below)))
         self.make_room(_ROOM)
 

@@ -10,6 +10,7 @@
 | ``approach``, ``admissible`` | joints made soft where that gets nowhere; none bears more than it can |
 | ``spread`` | a load pattern under displacement control |
 | ``contacts``, ``complement``, ``delassus``, ``rows`` | contacts of structures, solved through the structures |
+| ``abutting`` | contacts of bodies that touch where they are joined: nobody solves them |
 | ``active_rows`` | contacts where sweeps, or turns between contacts and joints, would take forever |
 | ``ties``, ``tie_impulses`` | Chipmunk's own constraints at the structures' bodies, solved through the structures |
 | ``tie_blows`` | blows that such constraints give: what a rope catches, say |

@@ -51,6 +51,7 @@ from sim.chipmunk import (
 )
 from sim.kernels import layout as at
 from sim.kernels import views
+from sim.kernels.abutting import abut, silence
 from sim.kernels.layout import (
     ARM_A,
     ARM_B,
@@ -109,10 +110,14 @@ def collect(c, t):  # type: ignore[no-untyped-def]
             other = w[ARBITER_BODY_B] if is_a else w[ARBITER_BODY_A]
             contacts = w[ARBITER_COUNT] & 0xFFFFFFFF
             owner, j = home(c, other) if contacts > 0 else (0, -1)
+            apart = owner != c or t[at.ABUTTING] == 0 or not abut(t, i, j)
             for k in range(contacts):
                 where = w[ARBITER_CONTACTS] + CONTACT_BYTES * k
                 contact = floats(where, CONTACT_WORDS)
                 if contact[CONTACT_NORMAL_MASS] == 0.0:
+                    continue
+                if not apart:
+                    silence(contact)
                     continue
                 if count >= len(places):
                     missed += 1

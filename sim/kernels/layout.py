@@ -56,9 +56,11 @@ SHARED = 43
 # How many of its joints Chipmunk has come to in this step; whether constraints of its own hold a structure, see `ties`;
 # whether a support was set moving at once, see `late`.
 CALLED, PINNED, JERKED = 44, 45, 46
+# How many pairs of its bodies touch where they are joined, see `sim.abutting`.
+ABUTTING = 47
 # In `ACTIVE`: the joint holds, and what it stores is not known yet, see `strained`.
 UNKNOWN = 2
-_FIRST_ADDRESS = 47
+_FIRST_ADDRESS = 48
 (
     BODY_AT,  # (bodies,) int64: addresses of the cpBody structs
     JOINT_AT,  # (joints,) int64: addresses of the cpConstraint structs
@@ -109,8 +111,9 @@ _FIRST_ADDRESS = 47
     PUSHES,  # (room, 4): address (int64) and pseudo-velocities with which loose bodies ended the last step
     LAST_FORCE,  # (bodies, 3): forces and moments from outside in the last step, see `sudden`
     CARRIED,  # (bodies, 3): by what bodies were moved at the start of a step of another length, see `moves`
-) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 49)
-CONTROL_WORDS = _FIRST_ADDRESS + 49
+    ABUTTING_PAIRS,  # (pairs,) int64, sorted: of two bodies the lesser index times that of all, and the greater one
+) = range(_FIRST_ADDRESS, _FIRST_ADDRESS + 50)
+CONTROL_WORDS = _FIRST_ADDRESS + 50
 
 # Settings (float64); the spread ones are those of the load pattern's spring, see `spread`; BETA and DELTA of a step are
 # chosen from the wanted ones.

@@ -134,5 +134,7 @@ column = _matrix(at.COLUMN, at.LOWER, 9)
 settings = _fixed(at.SETTINGS, at.SETTINGS_WORDS)
 ledger = _fixed(at.LEDGER, at.LEDGER_WORDS)
 
+abutting = _vector(at.ABUTTING_PAIRS, at.ABUTTING, _INTEGERS)
+
 places = _numpy_matrix(at.PLACES, at.ROOM, at.PLACE_WORDS, _INTEGERS)
 touches = _numpy_matrix(at.TOUCHES, at.ROOM, at.TOUCH_WORDS)

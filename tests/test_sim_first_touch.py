@@ -77,13 +77,16 @@ def test_a_body_that_flies_at_a_wall_touches_it_in_time(kind: str) -> None:
 
 
 def bent_by_a_fast_ball(rate: int, stopped: bool) -> float:
-    """Plastic work [J] of a cantilever of 50 mm that a ball of 0.1 m and 20 kg flies at with 40 m/s."""
+    """Plastic work [J] of a cantilever of 50 mm that a ball of 0.1 m and 20 kg flies at with 40 m/s.
+
+    Without gravity, whose first steps are taken in parts, in which the ball is seen.
+    """
     space = pymunk.Space()
-    space.gravity, space.collision_slop = (0.0, -9.81), 1e-3
+    space.collision_slop = 1e-3
     strip = parse_scene(builtin_text("cantilever").replace("50x100 mm", "50x50 mm"), "strip")
     beam = assemble(strip, Model("lobatto", 6, "fibre", fibres=8), space)
     ball = pymunk.Body(20.0, 0.5 * 20.0 * 0.05**2)
-    ball.position, ball.velocity = (0.85, 0.3137), (0.0, -40.0)
+    ball.position, ball.velocity = (0.85, 0.25), (0.0, -40.0)
     space.add(ball, pymunk.Circle(ball, 0.05))
     for _ in range(round(0.25 * rate)):
         if stopped:

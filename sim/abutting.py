@@ -15,7 +15,7 @@ import numpy as np
 import pymunk
 
 from sim.joint import DuctileJoint
-from sim.shape_copies import copy_of, grow, place, touch
+from sim.shape_copies import copy_of, grow, nearest_points, place
 
 # Over the smaller body's reach: what is no further apart touches.
 _NEAR = 1e-3
@@ -99,4 +99,4 @@ def _touch(a: _Outline, b: _Outline, pose_a: tuple[float, pymunk.Vec2d], pose_b:
         outline.grow(0.5 * margin)
         for _, own in outline.shapes:
             place(own, angle, centre - outline.centre.rotated(angle))
-    return any(touch(one, other) for _, one in a.shapes for _, other in b.shapes)
+    return any(nearest_points(one, other)[1] for _, one in a.shapes for _, other in b.shapes)

@@ -59,8 +59,3 @@ def place(own: object, angle: float, origin: pymunk.Vec2d) -> None:
     """Put a copy to where its body would be with that angle [rad], and its own origin there [m]."""
     c, s = math.cos(angle), math.sin(angle)
     lib.cpShapeUpdate(own, (c, s, -s, c, *origin))
-
-
-def touch(one: object, other: object) -> bool:
-    """Whether two copies touch where they are."""
-    return bool(lib.cpShapesCollide(one, other).count > 0)

@@ -36,7 +36,7 @@ from sim.kernels.layout import (
 from sim.kernels.links import links_of, pull
 from sim.kernels.overlap import push_apart
 from sim.kernels.residual import descend, reach_of
-from sim.kernels.rows import loose_velocity, push_loose, sum_up
+from sim.kernels.rows import copy_contact, loose_velocity, push_loose, sum_up
 from sim.memory import floats, kernel
 
 #: Bare arrays over those that `gather_contacts` gives.
@@ -79,10 +79,7 @@ def gather_contacts(head):  # type: ignore[no-untyped-def]
         for k in range(t[at.CONTACTS]):
             if own_touches[k, GAP] >= FAR:
                 continue
-            for i in range(at.PLACE_WORDS):
-                places[count, i] = own[k, i]
-            for i in range(at.TOUCH_WORDS):
-                touches[count, i] = own_touches[k, i]
+            copy_contact(own, own_touches, k, places, touches, count)
             count += 1
         c = t[at.NEXT]
     return places, touches
@@ -119,10 +116,7 @@ def touch_all(head, last, places, touches):  # type: ignore[no-untyped-def]
         of_own, change_of_own = np.empty(2 * many), np.zeros(2 * many)
         for m in range(many):
             k = index[m]
-            for i in range(at.PLACE_WORDS):
-                own[m, i] = places[k, i]
-            for i in range(at.TOUCH_WORDS):
-                own_touches[m, i] = touches[k, i]
+            copy_contact(places, touches, k, own, own_touches, m)
             of_own[2 * m], of_own[2 * m + 1] = v[2 * k], v[2 * k + 1]
         p, t = bare_places(own), bare_touches(own_touches)
         largest = max(largest, complement(head, p, t, operator(p, t), of_own, change_of_own))
@@ -143,7 +137,7 @@ def touch_all(head, last, places, touches):  # type: ignore[no-untyped-def]
         c = t[at.NEXT]
     if views.control(head)[at.PUSHED_APART] == 0:
         views.control(head)[at.PUSHED_APART] = 1
-        push_apart(head, places, touches, v, change)
+        push_apart(head, places, touches)
     return largest
 
 

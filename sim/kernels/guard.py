@@ -28,7 +28,7 @@ from sim.chipmunk import BODY_WORDS, SPIN, VX, X, Y
 from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.bodies import load_velocities
-from sim.kernels.inertia import mass_of, moment_of
+from sim.kernels.inertia import as_rigid_body, mass_of, moment_of
 from sim.kernels.layout import (
     AFTER_IMPULSES,
     BEFORE,
@@ -189,21 +189,18 @@ def rigid_motion(t, velocity):  # type: ignore[no-untyped-def]
 
     Rest, if something holds it.
     """
-    mass, x, y, vx, vy, turn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    vx, vy, turn = 0.0, 0.0, 0.0
     if t[at.FREE] == 0:
-        return x, y, vx, vy, turn
+        return 0.0, 0.0, vx, vy, turn
     body_at, moving = views.body_at(t), t[at.MOVING]
+    mass, x, y, inertia = as_rigid_body(t)
     for i in range(moving):
-        b = floats(body_at[i], BODY_WORDS)
-        m = mass_of(b)
-        mass, x, y = mass + m, x + m * b[X], y + m * b[X + 1]
+        m = mass_of(floats(body_at[i], BODY_WORDS))
         vx, vy = vx + m * velocity[i, 0], vy + m * velocity[i, 1]
-    x, y, vx, vy = x / mass, y / mass, vx / mass, vy / mass
-    inertia = 0.0
+    vx, vy = vx / mass, vy / mass
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)
         m, dx, dy = mass_of(b), b[X] - x, b[X + 1] - y
-        inertia += moment_of(b) + m * (dx * dx + dy * dy)
         turn += moment_of(b) * velocity[i, 2] + m * (dx * (velocity[i, 1] - vy) - dy * (velocity[i, 0] - vx))
     return x, y, vx, vy, turn / inertia
 

@@ -95,20 +95,28 @@ def add_inertia(t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def give_back(t, velocity, out):  # type: ignore[no-untyped-def]
-    """Give the moment of the inertia that was added at ``velocity`` back to a free structure's velocities ``out``."""
-    body_at, weight, moving = views.body_at(t), views.weight(t), t[at.MOVING]
-    mass, cx, cy = 0.0, 0.0, 0.0
-    for i in range(moving):
+def as_rigid_body(t):  # type: ignore[no-untyped-def]
+    """Mass [kg], centre [m] and moment of inertia about it [kg m²] of a structure's moving bodies as one."""
+    body_at, mass, cx, cy, inertia = views.body_at(t), 0.0, 0.0, 0.0, 0.0
+    for i in range(t[at.MOVING]):
         b = floats(body_at[i], BODY_WORDS)
         mass, cx, cy = mass + mass_of(b), cx + mass_of(b) * b[X], cy + mass_of(b) * b[X + 1]
     cx, cy = cx / mass, cy / mass
-    lost, inertia = 0.0, 0.0
-    for i in range(moving):
+    for i in range(t[at.MOVING]):
         b = floats(body_at[i], BODY_WORDS)
         x, y = b[X] - cx, b[X + 1] - cy
         inertia += moment_of(b) + mass_of(b) * (x * x + y * y)
-        lost += (weight[i, INERTIA_I] - moment_of(b)) * velocity[i, 2]
+    return mass, cx, cy, inertia
+
+
+@kernel
+def give_back(t, velocity, out):  # type: ignore[no-untyped-def]
+    """Give the moment of the inertia that was added at ``velocity`` back to a free structure's velocities ``out``."""
+    body_at, weight, moving = views.body_at(t), views.weight(t), t[at.MOVING]
+    _, cx, cy, inertia = as_rigid_body(t)
+    lost = 0.0
+    for i in range(moving):
+        lost += (weight[i, INERTIA_I] - moment_of(floats(body_at[i], BODY_WORDS))) * velocity[i, 2]
     turn = lost / inertia
     for i in range(moving):
         b = floats(body_at[i], BODY_WORDS)

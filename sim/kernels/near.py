@@ -53,7 +53,7 @@ from sim.kernels.lengths import LONGEST_PART
 from sim.kernels.noted import IN_PARTS, LOOSE_WORDS, ask
 from sim.kernels.owners import home, unite
 from sim.kernels.reached import index_in
-from sim.kernels.rows import own_velocity
+from sim.kernels.rows import copy_contact, own_velocity
 from sim.memory import floats, inlined, kernel
 
 # How many parts' way ahead contacts are looked for, and the least way, over the reach of a shape.
@@ -221,10 +221,7 @@ def forget_body(t, body):  # type: ignore[no-untyped-def]
     count = first
     for k in range(first, t[at.CONTACTS]):
         if places[k, BODY_A] != body and places[k, BODY_B] != body:
-            for i in range(at.PLACE_WORDS):
-                places[count, i] = places[k, i]
-            for i in range(at.TOUCH_WORDS):
-                touches[count, i] = touches[k, i]
+            copy_contact(places, touches, k, places, touches, count)
             count += 1
     t[at.CONTACTS], t[at.NEAR] = count, count - first
 

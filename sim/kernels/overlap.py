@@ -16,7 +16,7 @@ from sim.kernels import layout as at
 from sim.kernels import views
 from sim.kernels.blocks import solve
 from sim.kernels.delassus import respond_to
-from sim.kernels.inertia import mass_of, moment_of
+from sim.kernels.inertia import as_rigid_body
 from sim.kernels.kinematics import rates
 from sim.kernels.layout import (
     BODY_A,
@@ -41,17 +41,16 @@ _LIGHT, _TURNS, _CENTRE, _SHIFT, _FRAME_WORDS = 0, 1, 2, 4, 7
 
 
 @kernel
-def push_apart(head, places, touches, v, change):  # type: ignore[no-untyped-def]
-    """Pseudo-velocities that take out overlap; changes the arrays ``v`` and ``change`` of as many rows."""
+def push_apart(head, places, touches):  # type: ignore[no-untyped-def]
+    """Pseudo-velocities that take out overlap."""
     any_overlap = False
     for k in range(len(places)):
-        v[2 * k], v[2 * k + 1] = 0.0, 0.0
-        change[2 * k], change[2 * k + 1] = 0.0, 0.0
         any_overlap = any_overlap or touches[k, PUSH] > 0.0
     if not any_overlap:
         return
     frames = frames_of(head)
     of, arms = sides_of(head, frames, places, touches)
+    v, change = np.zeros(2 * len(places)), np.zeros(2 * len(places))
     g = np.zeros((len(v), len(v)))
     for k in range(len(places)):
         if bends(places[k], of[k]):
@@ -107,14 +106,7 @@ def frames_of(head):  # type: ignore[no-untyped-def]
     while c != 0:
         t, frame = views.control(c), frames[i]
         if t[at.FREE] == 1:
-            mass, x, y, moment, body_at = 0.0, 0.0, 0.0, 0.0, views.body_at(t)
-            for k in range(t[at.MOVING]):
-                b = floats(body_at[k], BODY_WORDS)
-                mass, x, y = mass + mass_of(b), x + mass_of(b) * b[X], y + mass_of(b) * b[Y]
-            x, y = x / mass, y / mass
-            for k in range(t[at.MOVING]):
-                b = floats(body_at[k], BODY_WORDS)
-                moment += moment_of(b) + mass_of(b) * ((b[X] - x) ** 2 + (b[Y] - y) ** 2)
+            mass, x, y, moment = as_rigid_body(t)
             frame[_LIGHT], frame[_TURNS], frame[_CENTRE], frame[_CENTRE + 1] = 1.0 / mass, 1.0 / moment, x, y
         i, c = i + 1, t[at.NEXT]
     return frames

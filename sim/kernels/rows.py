@@ -11,6 +11,15 @@ from sim.memory import floats, kernel
 
 
 @kernel
+def copy_contact(places, touches, k, others, other_touches, m):  # type: ignore[no-untyped-def]
+    """Have the m-th contact of ``others`` be the k-th of these."""
+    for i in range(at.PLACE_WORDS):
+        others[m, i] = places[k, i]
+    for i in range(at.TOUCH_WORDS):
+        other_touches[m, i] = touches[k, i]
+
+
+@kernel
 def direction(touch, row):  # type: ignore[no-untyped-def]
     """Unit vector of a row (even: normal, odd: tangent) and its moments about a and b."""
     dx, dy = touch[NORMAL], touch[NORMAL + 1]
